@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/understudy/cli/compare.h"
+#include "apps/understudy/cli/completion.h"
 #include "apps/understudy/cli/doctor.h"
 #include "apps/understudy/cli/help_layout.h"
 #include "apps/understudy/cli/key.h"
@@ -20,6 +21,7 @@
 #include "apps/understudy/cli/serve.h"
 #include "apps/understudy/cli/trim.h"
 #include "apps/understudy/cli/units.h"
+#include "apps/understudy/cli/version.h"
 #include "apps/understudy/cli/view_program.h"
 #include "apps/understudy/gl_server/gl_server.h"
 #include "apps/understudy/launch/listener.h"
@@ -38,6 +40,7 @@ int main(int argc, char** argv) try {
   CLI::App app{"Renders the volumes of unmodified OpenGL viewers by distributed ray casting.", "understudy"};
   app.formatter(std::make_shared<launcher::HelpLayout>());
   app.require_subcommand(1);
+  app.set_version_flag("--version", launcher::version_text);
   std::function<int()> chosen;
   launcher::add_run(app, line.viewer, chosen);
   launcher::add_replay(app, chosen);
@@ -55,6 +58,8 @@ int main(int argc, char** argv) try {
   launcher::add_compare(app, chosen);
   launcher::add_doctor(app, chosen);
   launcher::add_units(app, chosen);
+  launcher::add_completion(app, chosen);
+  launcher::add_manual(app, chosen);
   launcher::group_options(app);
   try {
     // The library takes them last to first, and without the program's name.

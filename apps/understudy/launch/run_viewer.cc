@@ -65,6 +65,16 @@ std::string absolute_or_empty(const std::string& path) {
   return path.empty() ? path : std::filesystem::absolute(path).string();
 }
 
+/// The loader divides its lists at these characters. Where the path to the libraries has one, the viewer is
+/// given a link to them.
+Installation within_a_list(Installation installation, const RunFolder& folder) {
+  if (installation.libraries.string().find_first_of(" \t:;") == std::string::npos) return installation;
+  const std::filesystem::path link = folder.path() / "lib";
+  std::filesystem::create_directory_symlink(installation.libraries, link);
+  installation.libraries = link;
+  return installation;
+}
+
 Environment viewer_environment(const RunArguments& arguments, const spu::Options& options,
                                const Installation& installation, const RunFolder& folder,
                                const std::optional<NodeGroupPlan>& nodes) {
@@ -85,7 +95,7 @@ Environment viewer_environment(const RunArguments& arguments, const spu::Options
     if (!options.connect.empty()) environment["UNDERSTUDY_CONNECT"] = absolute_or_empty(options.connect);
   }
   if (!arguments.injection) return environment;
-  const InjectionSettings injection = settings_of(*arguments.injection, installation);
+  const InjectionSettings injection = settings_of(*arguments.injection, within_a_list(installation, folder));
   if (std::filesystem::exists(injection.value)) {
     put_in_front(environment, injection.variable, injection.value);
   } else {

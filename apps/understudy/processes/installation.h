@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the parts of Understudy lie: beside this program, as built (build/bin and build/lib) or installed.
+// Where the parts of Understudy lie, as seen from this program: in the folder that built it, or installed.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,8 @@ namespace understudy::launcher {
 
 struct Installation {
   std::filesystem::path programs;   ///< …/bin
-  std::filesystem::path libraries;  ///< …/lib
+  std::filesystem::path libraries;  ///< build/lib, or …/lib/understudy
+  std::filesystem::path data;       ///< …/share/understudy
 
   std::filesystem::path node() const { return programs / "understudy-node"; }
   std::filesystem::path shim() const { return libraries / "libunderstudy.so"; }
@@ -18,7 +19,8 @@ struct Installation {
   std::filesystem::path entry_folder() const { return libraries / "entry"; }
 };
 
-/// Found from /proc/self/exe, so that a moved build folder works. Throws std::runtime_error without /proc.
+/// Found from /proc/self/exe, so that both kinds of folders can be moved. Throws std::runtime_error without
+/// /proc.
 Installation this_installation();
 
 /// The program `name` on PATH; empty when there is none.

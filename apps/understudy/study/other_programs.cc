@@ -26,7 +26,7 @@ constexpr int viewer_frames = 9, frames_until_settled = 3, vtk_frames = 3;
 constexpr const char* python = "/usr/bin/python3";  // the one that Debian's packages are for
 
 fs::path vtk_script() {
-  return this_installation().programs.parent_path() / "share" / "understudy" / "vtk_mappers.py";
+  return this_installation().data / "vtk_mappers.py";
 }
 
 }  // namespace

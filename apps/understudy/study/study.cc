@@ -208,7 +208,7 @@ void study_scene(const SceneDescription& description, SceneResults& results, Res
 
 /// index.html, by the script beside the programs.
 int write_page(const fs::path& folder) {
-  const fs::path script = this_installation().programs.parent_path() / "share" / "understudy" / "study_page.py";
+  const fs::path script = this_installation().data / "study_page.py";
   // The system's own comes first: matplotlib from Debian is for that one.
   const fs::path python = fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
   int status = 1;

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// `understudy completion SHELL` and `understudy manual`: what is installed beside the program, from the options
+// that it has.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace understudy::launcher {
+
+void add_completion(CLI::App& app, std::function<int()>& chosen);
+void add_manual(CLI::App& app, std::function<int()>& chosen);
+
+}  // namespace understudy::launcher

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/understudy/cli/version.h"
+
+#include <fmt/format.h>
+
+#include "apps/understudy/processes/installation.h"
+#include "generated_commit.h"
+#include "volume/raycast/ray_caster.h"
+
+namespace understudy::launcher {
+
+std::string version_number() {
+  return UNDERSTUDY_VERSION;
+}
+
+std::string version_text() {
+  const Installation here = this_installation();
+  const std::string nodes =
+      std::filesystem::exists(here.node()) ? here.node().string() : "not built (there was no MPI)";
+  return fmt::format(
+      "understudy {} ({}), built by {}\n"
+      "  instruction set  {}\n"
+      "  libraries        {}\n"
+      "  render nodes     {}\n"
+      "`understudy doctor` tells what works on this machine.",
+      UNDERSTUDY_VERSION, UNDERSTUDY_COMMIT, UNDERSTUDY_COMPILER, volume::instruction_set(),
+      here.libraries.string(), nodes);
+}
+
+}  // namespace understudy::launcher

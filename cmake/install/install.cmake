@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+# cmake --install: what users have (component runtime), and what programs are built with that cast rays, join the nodes or
+# add a unit to the chain (component development). Programs find everything from their own place, so that the prefix can be
+# moved.
+# What is installed is built by name, without tests and benchmarks.
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
+include(CMakePackageConfigHelpers)
+include(${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake)
+
+set(programs understudy understudy-view understudy-viewer)
+if(TARGET understudy-node)
+  list(APPEND programs understudy-node)
+endif()
+install(TARGETS ${programs} COMPONENT runtime)
+get_property(stubs GLOBAL PROPERTY UNDERSTUDY_STUBS)
+install(TARGETS understudy-entry understudy-core understudy-audit LIBRARY DESTINATION ${UNDERSTUDY_INSTALL_LIBRARIES}
+  COMPONENT runtime NAMELINK_SKIP)
+install(TARGETS ${stubs} LIBRARY DESTINATION ${UNDERSTUDY_INSTALL_LIBRARIES}/entry COMPONENT runtime)
+foreach(component runtime development)
+  set(suffix $<$<STREQUAL:${component},development>:-dev>)
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/understudy${suffix} RENAME copyright COMPONENT ${component})
+endforeach()
+install(FILES apps/understudy/study/study_page.py apps/bench/vtk_mappers.py DESTINATION ${UNDERSTUDY_INSTALL_DATA}
+  COMPONENT runtime)
+set(pages ${CMAKE_BINARY_DIR}/share)
+install(FILES ${pages}/man/man1/understudy.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
+foreach(program node view viewer)
+  install(CODE "file(CONFIGURE OUTPUT \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1/understudy-${program}.1\"
+    CONTENT \".so man1/understudy.1\\n\")" COMPONENT runtime)
+endforeach()
+foreach(completion bash-completion/completions/understudy zsh/vendor-completions/_understudy
+    fish/vendor_completions.d/understudy.fish)
+  get_filename_component(folder ${completion} DIRECTORY)
+  install(FILES ${pages}/${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder} COMPONENT runtime)
+endforeach()
+install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+
+# Components of find_package(Understudy), lowest first: each needs those before it.
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Understudy)
+set(headers_folder ${CMAKE_INSTALL_INCLUDEDIR}/understudy)
+
+# install_component(NAME TARGETS EXPORTED_NAME TARGET… HEADERS HEADER…)
+function(install_component name)
+  cmake_parse_arguments(ARG "" "" "TARGETS;HEADERS" ${ARGN})
+  while(ARG_TARGETS)
+    list(POP_FRONT ARG_TARGETS exported target)
+    set_target_properties(${target} PROPERTIES EXPORT_NAME ${exported})
+    target_include_directories(${target} INTERFACE $<INSTALL_INTERFACE:${headers_folder}>)
+    target_compile_features(${target} INTERFACE cxx_std_20)
+    install(TARGETS ${target} EXPORT Understudy-${name} ARCHIVE COMPONENT development)
+  endwhile()
+  install(EXPORT Understudy-${name} NAMESPACE Understudy:: DESTINATION ${package_folder} COMPONENT development)
+  public_headers(headers ${ARG_HEADERS})
+  foreach(header ${headers})
+    get_filename_component(folder ${header} DIRECTORY)
+    install(FILES ${header} DESTINATION ${headers_folder}/${folder} COMPONENT development)
+  endforeach()
+  foreach(header ${headers_GENERATED})
+    get_filename_component(folder ${header} DIRECTORY)
+    install(FILES ${CMAKE_BINARY_DIR}/generated/${header} DESTINATION ${headers_folder}/${folder} COMPONENT development)
+  endforeach()
+endfunction()
+
+install_component(raycast
+  TARGETS raycast understudy_volume files understudy_volume_file
+  HEADERS volume/brick/brick_store.h volume/brick/histogram.h volume/file/file_error.h volume/file/volume_file.h
+    volume/frame_counts.h volume/image.h volume/matrix.h volume/orbit_camera.h volume/raycast/ray_caster.h
+    volume/reference/pixel_integral.h volume/request.h volume/transfer_control_points.h)
+set(compositor_headers compositor/blend.h compositor/rendered.h compositor/service.h compositor/exchange/exchange.h
+  compositor/exchange/thread_communicator.h compositor/node/node.h)
+if(MPI_CXX_FOUND)
+  list(APPEND compositor_headers compositor/exchange/mpi_communicator.h)
+endif()
+install_component(compositor
+  TARGETS transport understudy_transport logging understudy_logging compositor understudy_compositor loading
+    understudy_loading pixels understudy_pixels nodes understudy_exchange
+  HEADERS ${compositor_headers})
+install_component(spu
+  TARGETS dispatch understudy_dispatch report understudy_report program_analysis understudy_program_analysis spu
+    understudy_spu
+  HEADERS spu/unit_description.h spu/chain.h spu/driver/driver.h spu/options.h spu/registry/assemble.h
+    spu/track/share_group.h)
+
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/UnderstudyConfig.cmake.in
+  ${CMAKE_CURRENT_BINARY_DIR}/UnderstudyConfig.cmake INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/UnderstudyConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/UnderstudyConfig.cmake
+  ${CMAKE_CURRENT_BINARY_DIR}/UnderstudyConfigVersion.cmake DESTINATION ${package_folder} COMPONENT development)
+file(RELATIVE_PATH prefix_from_pkgconfig /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/understudy-raycast.pc.in ${CMAKE_CURRENT_BINARY_DIR}/understudy-raycast.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/understudy-raycast.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+  COMPONENT development)
+
+include(${CMAKE_CURRENT_LIST_DIR}/packages.cmake)

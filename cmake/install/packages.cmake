@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+# cpack: understudy_VERSION_ARCHITECTURE.deb and understudy-dev, and archives.
+set(CPACK_PACKAGE_NAME understudy)
+set(CPACK_PACKAGE_VENDOR "The authors of Understudy")
+set(UNDERSTUDY_PACKAGER "Understudy <understudy@localhost>" CACHE STRING "Who made the packages: Name <address>")
+set(CPACK_PACKAGE_CONTACT ${UNDERSTUDY_PACKAGER})
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "OpenGL library that ray-casts a viewer's volume on MPI nodes")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_GENERATOR "DEB;TZST")
+set(CPACK_COMPONENTS_ALL runtime development)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_ARCHIVE_COMPONENT_INSTALL ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME understudy)
+set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
+  "Understudy stands under an unmodified volume viewer, recognises where the\nviewer draws its volume, lets MPI render nodes cast rays through it, and\nreturns the image to the viewer's own framebuffer.")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "openmpi-bin")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME understudy-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+  "Headers and archives of the ray caster, of the compositor and of the chain of\nstream processing units, with files for CMake and pkg-config.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+  "libexpat1-dev, libfmt-dev, libhwy-dev, libtbb-dev, nlohmann-json3-dev, zlib1g-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "glslang-dev, libopenmpi-dev, libzstd-dev, pkg-config")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/debian_files.cmake)
+include(CPack)

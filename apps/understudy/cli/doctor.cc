@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/understudy/hosts/mpi_launcher.h"
 #include "apps/understudy/processes/installation.h"
 #include "apps/understudy/sandbox/sandbox.h"
 #include "volume/offscreen/egl.h"
@@ -123,15 +124,13 @@ Finding look_at_osmesa() {
 }
 
 Finding look_at_mpi() {
-  const auto mpirun = program_on_path("mpirun");
-  if (!mpirun) return {false, "mpirun is not on PATH"};
-  std::array<char, 256> line{};
-  if (std::FILE* output = popen("mpirun --version 2>&1", "r")) {
-    if (std::fgets(line.data(), line.size(), output) == nullptr) line[0] = '\0';
-    pclose(output);
-  }
-  line[std::strcspn(line.data(), "\n")] = '\0';
-  return {true, fmt::format("{} at {}; between hosts it encrypts nothing", line.data(), mpirun->string())};
+  const auto family = mpi_of_nodes();
+  if (!family) return {false, "there was no MPI when this was built"};
+  const auto found = find_mpi_launcher(*family);
+  if (const auto* const obstacle = std::get_if<std::string>(&found)) return {false, *obstacle};
+  const auto& launcher = std::get<MpiLauncher>(found);
+  return {true, fmt::format("{} at {}; between hosts it encrypts nothing", launcher.version.text,
+                            launcher.program.string())};
 }
 
 Finding look_at_nodes() {

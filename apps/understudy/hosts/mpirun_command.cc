@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/hosts/mpirun_command.h"
 
+#include <fmt/format.h>
+
 #include <sstream>
 
 namespace understudy::launcher {
@@ -12,7 +14,8 @@ void append(Words& words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
 }
 
-Words how_to_launch(const Placement& placement, const std::filesystem::path& folder) {
+/// Of Open MPI before 5, whose launcher is ORTE.
+Words launch_by_orte(const Placement& placement, const std::filesystem::path& folder) {
   switch (placement.launch) {
     case Launch::this_machine:
       return {// No remote shell is looked for, no network device is needed.
@@ -35,6 +38,73 @@ Words how_to_launch(const Placement& placement, const std::filesystem::path& fol
   return {};
 }
 
+/// The same for Open MPI from 5 on, whose launcher is PRRTE and whose shared memory is `sm`.
+Words launch_by_prrte(const Placement& placement, const std::filesystem::path& folder) {
+  switch (placement.launch) {
+    case Launch::this_machine:
+      return {"--mca",
+              "btl",
+              "self,sm",
+              "--prtemca",
+              "ras",
+              "^slurm",
+              "--prtemca",
+              "prte_tmpdir_base",
+              folder.string(),
+              "--mca",
+              "btl_sm_backing_directory",
+              shared_memory_folder(folder).string()};
+    case Launch::remote_shell:
+      return {"--prtemca",
+              "plm",
+              "ssh",
+              "--mca",
+              "btl",
+              "self,sm,tcp",
+              "--prtemca",
+              "prte_oob_tcp_keepalive_time",
+              "3",
+              "--prtemca",
+              "prte_oob_tcp_keepalive_intvl",
+              "1",
+              "--prtemca",
+              "prte_oob_tcp_keepalive_probes",
+              "3"};
+    case Launch::slurm:
+      return {"--mca", "btl", "self,sm,tcp"};
+  }
+  return {};
+}
+
+Words words_of_open_mpi(int major, const Placement& placement, const std::filesystem::path& folder) {
+  const bool prrte = major >= 5;
+  const bool elsewhere = placement.launch != Launch::this_machine;
+  Words words;
+  // More ranks than cores are usual here, and each rank uses all the cores it finds. Host after host, in the
+  // order of the file: rank 0 on the first, which is this one.
+  if (prrte)
+    append(words, {"--map-by", elsewhere ? "slot:OVERSUBSCRIBE" : ":OVERSUBSCRIBE"});
+  else
+    append(words, {"--oversubscribe"});
+  // Ranks that wait must not keep the others from their cores.
+  append(words, {"--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"});
+  if (elsewhere && !prrte) append(words, {"--map-by", "slot"});
+  if (elsewhere && !placement.hosts.empty()) append(words, {"--hostfile", own_hostfile(folder).string()});
+  append(words, prrte ? launch_by_prrte(placement, folder) : launch_by_orte(placement, folder));
+  return words;
+}
+
+/// Of MPICH, whose launcher is Hydra.
+Words words_of_mpich(const Placement& placement, const std::filesystem::path& folder) {
+  Words words{"-bind-to", "none"};
+  if (placement.launch == Launch::this_machine) append(words, {"-launcher", "fork", "-hosts", "localhost"});
+  if (placement.launch == Launch::remote_shell) append(words, {"-launcher", "ssh"});
+  if (placement.launch == Launch::slurm) append(words, {"-launcher", "slurm"});
+  if (placement.launch != Launch::this_machine && !placement.hosts.empty())
+    append(words, {"-f", own_hostfile(folder).string()});
+  return words;
+}
+
 }  // namespace
 
 std::filesystem::path own_hostfile(const std::filesystem::path& folder) {
@@ -45,19 +115,20 @@ std::filesystem::path shared_memory_folder(const std::filesystem::path& folder) 
   return folder / "ranks";
 }
 
-Words mpirun_words(const Placement& placement, const std::filesystem::path& folder) {
-  Words words{"mpirun", "-n", std::to_string(placement.ranks),
-              // More ranks than cores are usual here, and each rank uses all the cores it finds.
-              "--oversubscribe", "--bind-to", "none",
-              // Ranks that wait must not keep the others from their cores.
-              "--mca", "mpi_yield_when_idle", "1"};
-  if (placement.launch != Launch::this_machine) {
-    // Host after host, in the order of the file: rank 0 on the first, which is this one.
-    append(words, {"--map-by", "slot"});
-    if (!placement.hosts.empty()) append(words, {"--hostfile", own_hostfile(folder).string()});
-  }
-  append(words, how_to_launch(placement, folder));
+Words mpirun_words(const MpiLauncher& launcher, const Placement& placement,
+                   const std::filesystem::path& folder) {
+  Words words{launcher.program.string(), "-n", std::to_string(placement.ranks)};
+  append(words, launcher.version.family == MpiFamily::mpich
+                    ? words_of_mpich(placement, folder)
+                    : words_of_open_mpi(launcher.version.major, placement, folder));
   return words;
+}
+
+std::string own_hostfile_text(MpiFamily family, const std::vector<Host>& hosts) {
+  if (family == MpiFamily::open_mpi) return hostfile_text(hosts);
+  std::string text;
+  for (const Host& host : hosts) text += fmt::format("{}:{}\n", host.name, host.slots);
+  return text;
 }
 
 Environment mpirun_environment(Environment nodes, const Placement& placement,

@@ -67,10 +67,10 @@ std::string last_words(const std::filesystem::path& log, std::uintmax_t from) {
   return verdict;
 }
 
-Command mpirun_command(const Installation& installation, const NodeGroupPlan& plan, const Placement& placement,
-                       const std::filesystem::path& folder) {
+Command mpirun_command(const Installation& installation, const NodeGroupPlan& plan, const MpiLauncher& launcher,
+                       const Placement& placement, const std::filesystem::path& folder) {
   Command command;
-  command.arguments = mpirun_words(placement, folder);
+  command.arguments = mpirun_words(launcher, placement, folder);
   for (const std::string& word :
        {installation.node().string(), std::string("--control"), (plan.folder / ranks_socket).string()})
     command.arguments.push_back(word);
@@ -99,14 +99,14 @@ bool is_on_path(const std::string& program) {
 }  // namespace
 
 std::string obstacle_to_nodes(const Installation& installation) {
-  if (!program_on_path("mpirun")) {
-    return "no MPI here (mpirun is not on PATH; apt install openmpi-bin libopenmpi-dev, then ./run build)";
-  }
-  if (!std::filesystem::exists(installation.node())) {
-    return fmt::format("{} was not built (apt install libopenmpi-dev, then ./run build)",
+  const auto family = mpi_of_nodes();
+  if (!family || !std::filesystem::exists(installation.node())) {
+    return fmt::format("{} was not built (apt install libopenmpi-dev openmpi-bin, then ./run build)",
                        installation.node().string());
   }
-  return {};
+  const auto found = find_mpi_launcher(*family);
+  const auto* const obstacle = std::get_if<std::string>(&found);
+  return obstacle != nullptr ? *obstacle : "";
 }
 
 std::vector<std::string> backend_choices(const std::filesystem::path& folder) {
@@ -158,11 +158,15 @@ void NodeGroup::start_on(const Placement& placement) {
   std::filesystem::remove_all(group_folder_, not_removed);
   group_folder_ = plan_.folder / fmt::format("group-{}", ++groups_);
   std::filesystem::create_directories(shared_memory_folder(group_folder_));
-  if (!placement.hosts.empty()) std::ofstream(own_hostfile(group_folder_)) << hostfile_text(placement.hosts);
+  const auto found = find_mpi_launcher(mpi_of_nodes().value_or(MpiFamily::open_mpi));
+  if (const auto* const obstacle = std::get_if<std::string>(&found)) throw std::runtime_error(*obstacle);
+  const auto& launcher = std::get<MpiLauncher>(found);
+  if (!placement.hosts.empty())
+    std::ofstream(own_hostfile(group_folder_)) << own_hostfile_text(launcher.version.family, placement.hosts);
   log_start_ = size_of(log_of(plan_));
   why_ended_.clear();
   started_at_ = Clock::now();
-  mpirun_.emplace(mpirun_command(installation_, plan_, placement, group_folder_));
+  mpirun_.emplace(mpirun_command(installation_, plan_, launcher, placement, group_folder_));
 }
 
 void NodeGroup::try_to(const std::function<void()>& start) {

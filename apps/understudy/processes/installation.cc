@@ -12,7 +12,7 @@ Installation this_installation() {
   const std::filesystem::path programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   const auto from_programs = [&](const char* path) { return (programs / path).lexically_normal(); };
   Installation installed{programs, from_programs(UNDERSTUDY_LIBRARIES_FROM_PROGRAMS),
-                               from_programs(UNDERSTUDY_DATA_FROM_PROGRAMS)};
+                         from_programs(UNDERSTUDY_DATA_FROM_PROGRAMS)};
   if (std::filesystem::exists(installed.shim())) return installed;
   return {programs, from_programs("../lib"), from_programs("../share/understudy")};
 }

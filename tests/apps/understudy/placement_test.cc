@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where ranks go: hostfiles, Slurm's lists and environment, and the command line that Open MPI gets of them.
+// Where ranks go: hostfiles, Slurm's lists and environment, and the command line that MPI's launcher gets of
+// them.
 #include "apps/understudy/hosts/placement.h"
 
 #include <gmock/gmock.h>
@@ -213,10 +214,67 @@ TEST(Placement, AnAllocationThatThisMachineIsNotInIsLeftAlone) {
   EXPECT_EQ(placement_of({}, one_node, is_node2).ranks, 6);
 }
 
-std::string line_of(const Placement& placement) {
+std::string line_of(const Placement& placement, MpiFamily family = MpiFamily::open_mpi, int major = 4) {
   std::string line;
-  for (const std::string& word : mpirun_words(placement, "/run/x")) line += (line.empty() ? "" : " ") + word;
+  for (const std::string& word : mpirun_words({"mpirun", {family, major, {}}}, placement, "/run/x"))
+    line += (line.empty() ? "" : " ") + word;
   return line;
+}
+
+TEST(MpiVersion, IsReadOfWhatTheLauncherSays) {
+  const auto text_of = [](const char* said) {
+    return mpi_version(said).value_or(MpiVersion{.text = "none"}).text;
+  };
+  EXPECT_EQ(text_of("mpirun (Open MPI) 4.1.4\n\nReport bugs to http://www.open-mpi.org/community/help/\n"),
+            "Open MPI 4.1.4");
+  EXPECT_EQ(text_of("mpirun (Open MPI) 5.0.7rc2\n"), "Open MPI 5.0.7rc2");
+  EXPECT_EQ(mpi_version("mpirun (Open MPI) 5.0.7\n")->major, 5);
+  EXPECT_EQ(text_of("HYDRA build details:\n    Version:                                 4.0.2\n    CC:  gcc\n"),
+            "MPICH 4.0.2");
+  EXPECT_EQ(text_of("Intel(R) MPI Library for Linux* OS, Version 2021.9 Build 20230306\n"), "none");
+  EXPECT_EQ(text_of("bash: mpirun: command not found\n"), "none");
+  EXPECT_EQ(text_of("mpirun (Open MPI) \n"), "none");
+  EXPECT_EQ(text_of(""), "none");
+}
+
+/// A folder of programs that say what launchers say, alone on PATH but for the shell.
+class LaunchersOnPath : public testing::Test {
+ protected:
+  LaunchersOnPath() : before_(std::getenv("PATH")) {
+    std::string name = "/tmp/understudy-launchers-XXXXXX";
+    folder_ = mkdtemp(name.data());
+    setenv("PATH", folder_.c_str(), 1);
+  }
+  ~LaunchersOnPath() override {
+    setenv("PATH", before_.c_str(), 1);
+    std::filesystem::remove_all(folder_);
+  }
+  void put(const char* name, const char* said) const {
+    std::ofstream(folder_ / name) << "#!/bin/sh\necho '" << said << "'\n";
+    std::filesystem::permissions(folder_ / name, std::filesystem::perms::owner_all);
+  }
+  static std::string found(MpiFamily family) {
+    const auto found = find_mpi_launcher(family);
+    if (const auto* const launcher = std::get_if<MpiLauncher>(&found))
+      return launcher->program.filename().string() + ", " + launcher->version.text;
+    return std::get<std::string>(found);
+  }
+
+ private:
+  std::string before_;
+  std::filesystem::path folder_;
+};
+
+TEST_F(LaunchersOnPath, AreTheMpiOfTheNodes) {
+  EXPECT_THAT(found(MpiFamily::open_mpi),
+              testing::AllOf(HasSubstr("mpirun is not on PATH"), HasSubstr("apt install openmpi-bin")));
+  put("mpirun", "mpirun (Open MPI) 5.0.3");
+  EXPECT_EQ(found(MpiFamily::open_mpi), "mpirun, Open MPI 5.0.3");
+  EXPECT_THAT(found(MpiFamily::mpich), HasSubstr("mpirun is Open MPI 5.0.3; apt install mpich"));
+  put("mpiexec.hydra", "HYDRA build details: Version: 4.1.2");
+  EXPECT_EQ(found(MpiFamily::mpich), "mpiexec.hydra, MPICH 4.1.2");
+  put("mpirun", "some other launcher");
+  EXPECT_THAT(found(MpiFamily::open_mpi), HasSubstr("mpirun is of another MPI"));
 }
 
 TEST(MpirunWords, OnThisMachineNeedNoNetwork) {
@@ -243,6 +301,30 @@ TEST(MpirunWords, InAnAllocationLeaveTheLaunchToSlurm) {
   EXPECT_THAT(line_of({Launch::slurm, 2, {{"a"}, {"b"}}}),
               AllOf(HasSubstr("--hostfile /run/x/hosts"), Not(HasSubstr("plm"))));
   EXPECT_EQ(mpirun_environment({}, {Launch::slurm, 6, {}}, "/run/x").count("TMPDIR"), 0U);
+}
+
+TEST(MpirunWords, OfOpenMpi5AreThoseOfPrrte) {
+  const auto line = [](const Placement& placement) { return line_of(placement, MpiFamily::open_mpi, 5); };
+  EXPECT_EQ(
+      line({Launch::this_machine, 4, {}}),
+      "mpirun -n 4 --map-by :OVERSUBSCRIBE --bind-to none --mca mpi_yield_when_idle 1 --mca btl self,sm "
+      "--prtemca ras ^slurm --prtemca prte_tmpdir_base /run/x --mca btl_sm_backing_directory /run/x/ranks");
+  EXPECT_THAT(line({Launch::remote_shell, 4, {{"a"}, {"b", 3}}}),
+              testing::AllOf(HasSubstr("--map-by slot:OVERSUBSCRIBE"), HasSubstr("--hostfile /run/x/hosts"),
+                             HasSubstr("--prtemca plm ssh"), HasSubstr("btl self,sm,tcp"),
+                             Not(HasSubstr("vader")), Not(HasSubstr("orte"))));
+  EXPECT_THAT(line({Launch::slurm, 6, {}}), Not(HasSubstr("--prtemca")));
+}
+
+TEST(MpirunWords, OfMpichAreThoseOfHydra) {
+  const auto line = [](const Placement& placement) { return line_of(placement, MpiFamily::mpich); };
+  EXPECT_EQ(line({Launch::this_machine, 4, {}}), "mpirun -n 4 -bind-to none -launcher fork -hosts localhost");
+  EXPECT_EQ(line({Launch::remote_shell, 4, {{"a"}, {"b", 3}}}),
+            "mpirun -n 4 -bind-to none -launcher ssh -f /run/x/hosts");
+  EXPECT_EQ(line({Launch::slurm, 6, {}}), "mpirun -n 6 -bind-to none -launcher slurm");
+  const std::vector<Host> hosts{{"a"}, {"b", 3}};
+  EXPECT_EQ(own_hostfile_text(MpiFamily::mpich, hosts), "a:1\nb:3\n");
+  EXPECT_EQ(own_hostfile_text(MpiFamily::open_mpi, hosts), "a slots=1\nb slots=3\n");
 }
 
 TEST(LaunchAgent, IsOpenMpisOwnChoice) {

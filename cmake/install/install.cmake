@@ -91,4 +91,17 @@ configure_file(${CMAKE_CURRENT_LIST_DIR}/understudy-raycast.pc.in ${CMAKE_CURREN
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/understudy-raycast.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
   COMPONENT development)
 
+# Where the interpreter looks: Debian has one folder for all versions of Python 3.
+if(TARGET understudy_python)
+  if(EXISTS /etc/debian_version)
+    set(python_packages lib/python3/dist-packages)
+  else()
+    set(python_packages ${CMAKE_INSTALL_LIBDIR}/python${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}/site-packages)
+  endif()
+  set(UNDERSTUDY_INSTALL_PYTHON ${python_packages} CACHE STRING "Where the Python module is installed, below the prefix")
+  install(TARGETS understudy_python LIBRARY DESTINATION ${UNDERSTUDY_INSTALL_PYTHON}/understudy COMPONENT python)
+  install(FILES apps/python/understudy/__init__.py DESTINATION ${UNDERSTUDY_INSTALL_PYTHON}/understudy COMPONENT python)
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-understudy RENAME copyright COMPONENT python)
+endif()
+
 include(${CMAKE_CURRENT_LIST_DIR}/packages.cmake)

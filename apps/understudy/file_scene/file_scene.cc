@@ -114,14 +114,21 @@ volume::Vec3 FileScene::extent() const {
 }
 
 FileScene scene_of(const SceneArguments& arguments) {
+  const std::string file = volume::is_synthetic(arguments.volume)
+                               ? arguments.volume
+                               : std::filesystem::absolute(arguments.volume).string();
+  const volume::FileHints hints = hints_of(arguments);
+  FileScene scene = scene_of(arguments, volume::open_volume(file, hints)->description());
+  scene.load.file = file;
+  scene.load.hints = hints;
+  return scene;
+}
+
+FileScene scene_of(const SceneArguments& arguments, const volume::FileDescription& described) {
   FileScene scene;
   scene.image = image_of(arguments);
-  scene.load.file = volume::is_synthetic(arguments.volume)
-                        ? arguments.volume
-                        : std::filesystem::absolute(arguments.volume).string();
-  scene.load.hints = hints_of(arguments);
   scene.load.texels = texels_of(arguments);
-  scene.file = volume::open_volume(scene.load.file, scene.load.hints)->description();
+  scene.file = described;
   if (!arguments.spacing.empty()) std::ranges::copy(arguments.spacing, scene.file.spacing.begin());
   for (double& distance : scene.file.spacing) distance = volume::believable_spacing(distance);
   scene.mapping = volume::mapping_of(scene.file, scene.load.texels);

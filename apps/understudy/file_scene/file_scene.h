@@ -59,6 +59,8 @@ struct FileScene {
 /// Everything that can be known to be wrong before a byte of the volume is read. The volume's ghost layer is
 /// wide enough for the image. Throws std::invalid_argument and volume::FileError.
 FileScene scene_of(const SceneArguments& arguments);
+/// The same of scalars that lie in no file: what `arguments` says of a file is not looked at.
+FileScene scene_of(const SceneArguments& arguments, const volume::FileDescription& described);
 
 /// All but the classification, and the surfaces' values. Throws std::invalid_argument.
 volume::RenderRequest unclassified_request(const FileScene& scene, const ImageSettings& image);

@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Ray casting of volumes in NumPy arrays, and viewers under Understudy.
+
+    import numpy, understudy
+
+    scan = numpy.load("scan.npy")                       # (z, y, x)
+    image = understudy.render(scan, transfer_function="ct", camera=(30, 20, 4), size=(800, 600))
+
+    volume = understudy.Volume(scan, spacing=(0.5, 0.5, 1.0))
+    for azimuth in range(0, 360, 5):                    # the texels are taken once
+        frame = volume.render(camera=(azimuth, 20, 4), surfaces=["40%,#e8c090,0.5"], light="all")
+
+    report = understudy.run(["osgvolume", "scan.nrrd"], nodes=4)
+    print(report.frames_substituted, report.time_ms["substituted_median"])
+
+Images are float32 arrays of shape (height, width, 4): premultiplied RGBA, the top row first, without rounding. What is
+wrong is said by ValueError, in the words of the command line; lost render nodes by NodesLost.
+"""
+
+import contextlib
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import numpy
+
+from . import _native
+
+__version__ = _native.__version__
+__all__ = ["Nodes", "NodesLost", "Report", "Volume", "over", "read_report", "render", "run", "transfer_functions"]
+
+_CHOICES = {
+    "method": ("post-classified", "pre-integrated", "adaptive"),
+    "operator": ("over", "max", "add", "first-hit"),
+    "light": ("", "all", "surfaces"),
+    "texels": ("", "u8", "u16", "f32"),
+}
+
+
+class NodesLost(RuntimeError):
+    """The render nodes do not answer, or could not be started."""
+
+
+def transfer_functions():
+    """The names of the built-in transfer functions."""
+    return _native.transfer_functions()
+
+
+def _words(numbers, separator=","):
+    return numbers if isinstance(numbers, str) else separator.join(repr(float(number)) for number in numbers)
+
+
+def _control_points(table, value_range):
+    """A transfer function's JSON, of a dict as in a file or of an (N, 4) array of plain RGBA over the value range."""
+    if isinstance(table, dict):
+        return json.dumps(table)
+    rows = numpy.asarray(table, dtype=float)
+    if rows.ndim != 2 or rows.shape[1] != 4 or len(rows) < 2:
+        raise ValueError(f"transfer_function: an array of shape {rows.shape}; give (N, 4): red, green, blue and the opacity of "
+                         "one voxel's length, each 0 to 1")
+    low, high = value_range or (0.0, 1.0)
+    points = [{"at": low + (high - low) * i / (len(rows) - 1), "colour": list(row[:3]), "opacity": row[3]}
+              for i, row in enumerate(rows)]
+    return json.dumps({"positions": "values" if value_range else "range", "knots": points})
+
+
+class Volume:
+    """A volume of scalars, of which images are made.
+
+    array    shape (z, y, x), of any integer or float type. A C-contiguous array in native byte order is not copied, and must
+             not change while the volume is used; others are copied once.
+    spacing  distances between voxels along x, y and z, in any unit.
+    nodes    a group of render nodes (Nodes); None: this process, on all cores.
+
+    8 and 16 bits are kept as they are, all other types as float32. NaN is transparent.
+    """
+
+    def __init__(self, array, spacing=(1.0, 1.0, 1.0), nodes=None):
+        array = numpy.asarray(array)
+        if array.ndim != 3 or 0 in array.shape:
+            raise ValueError(f"an array of shape {array.shape}; give a volume of shape (z, y, x)")
+        if array.dtype.kind == "b":
+            array = array.view(numpy.uint8)
+        if array.dtype.kind not in "uif" or array.dtype.itemsize > 8:
+            raise ValueError(f"an array of {array.dtype}; give integers or floats of up to 64 bits")
+        if array.dtype == numpy.float16:
+            array = array.astype(numpy.float32)
+        array = numpy.ascontiguousarray(array, dtype=array.dtype.newbyteorder("="))
+        if len(spacing) != 3 or not all(float(distance) > 0 for distance in spacing):
+            raise ValueError(f"spacing {spacing}; give three positive distances, along x, y and z")
+        self.shape = array.shape
+        self._nodes = nodes  # which live as long as this volume
+        try:
+            self._native = _native.Volume(array, [float(distance) for distance in spacing], nodes.socket if nodes else "")
+        except RuntimeError as error:
+            raise NodesLost(str(error)) from None
+
+    def render(self, transfer_function="grey", camera=(30, 20, 4), size=(512, 512), step=1.0, *, value_range=None,
+               operator="over", method="post-classified", tolerance=1e-3, termination=5e-6, surfaces=(), show_volume=True,
+               light="", light_from=None, material=None, texels="", texel_range=None):
+        """An image of the volume: float32, (height, width, 4), premultiplied RGBA, the top row first.
+
+        transfer_function  a built-in name (transfer_functions()), a path to a JSON file, such a file as a dict, or an (N, 4)
+                           array of plain RGBA over `value_range`, whose alpha is the opacity of one voxel's length
+        camera             azimuth and elevation in degrees, distance in half diagonals of the volume, and, if given, roll
+        size               (width, height) in pixels
+        step               between samples, in voxels
+        value_range        (low, high) of an array's ends, in values of the volume; None: the volume's least and greatest value
+        operator           "over", "max", "add" or "first-hit"
+        method             "post-classified", "pre-integrated" or "adaptive" (steps divided until each is within `tolerance`)
+        termination        a ray ends where less than this shows through
+        surfaces           iso-surfaces: a value, or "VALUE[,COLOUR[,OPACITY]]" as "40%,#e8c090,0.5"
+        show_volume        False: surfaces alone
+        light              "all" or "surfaces"; the light is at the eye unless light_from=(azimuth, elevation)
+        material           (ambient, diffuse, specular, shininess)
+        texels             "u8", "u16" or "f32": what is kept of each scalar; texel_range=(low, high): the values these span
+        """
+        for name, value in {"operator": operator, "method": method, "light": light, "texels": texels}.items():
+            if value not in _CHOICES[name]:
+                raise ValueError(f"{name}={value!r}: give one of {', '.join(repr(word) for word in _CHOICES[name] if word)}")
+        named = isinstance(transfer_function, (str, os.PathLike))
+        settings = {
+            "transfer_function": os.fspath(transfer_function) if named else "grey",
+            "camera": _words(camera), "size": size if isinstance(size, str) else "x".join(str(int(side)) for side in size),
+            "step": float(step), "termination": float(termination), "operator": operator, "method": method,
+            "tolerance": float(tolerance), "surfaces": [str(surface) for surface in surfaces], "no_volume": not show_volume,
+            "light": light, "texels": texels,
+        }
+        for name, numbers in {"light_from": light_from, "material": material, "range": texel_range}.items():
+            if numbers is not None:
+                settings[name] = _words(numbers)
+        try:
+            return self._native.render(settings, "" if named else _control_points(transfer_function, value_range))
+        except RuntimeError as error:
+            if self._nodes is not None and not self._nodes.running():
+                raise NodesLost(str(error)) from None
+            raise ValueError(str(error)) from None
+
+
+def render(array, transfer_function="grey", camera=(30, 20, 4), size=(512, 512), step=1.0, *, spacing=(1.0, 1.0, 1.0), nodes=None,
+           **settings):
+    """One image of an array: Volume(array, spacing, nodes).render(…). `nodes` may be a number of ranks, for this image alone."""
+    with contextlib.ExitStack() as stack:
+        if isinstance(nodes, int):
+            nodes = stack.enter_context(Nodes(nodes)) if nodes > 0 else None
+        return Volume(array, spacing, nodes).render(transfer_function, camera, size, step, **settings)
+
+
+def over(image, background=(0.0, 0.0, 0.0)):
+    """An image over an opaque colour, as uint8 RGB: what Pillow and matplotlib save."""
+    image = numpy.asarray(image)
+    colours = image[..., :3] + (1 - image[..., 3:]) * numpy.asarray(background, dtype=numpy.float32)
+    return (numpy.clip(colours, 0, 1) * 255 + 0.5).astype(numpy.uint8)
+
+
+def program(name="understudy"):
+    """The path of an installed program: UNDERSTUDY_BIN, the folder of programs beside this module, or PATH."""
+    beside = [parent / "bin" / name for parent in Path(__file__).resolve().parents]
+    chosen = [Path(os.environ["UNDERSTUDY_BIN"]) / name] if "UNDERSTUDY_BIN" in os.environ else []
+    for path in chosen + beside:
+        if os.access(path, os.X_OK) and path.is_file():
+            return str(path)
+    found = shutil.which(name)
+    if found is None:
+        raise FileNotFoundError(f"{name} is neither beside the module 'understudy' nor on PATH; set UNDERSTUDY_BIN to its folder")
+    return found
+
+
+class Nodes:
+    """A group of render nodes, started by mpirun on this machine or on the hosts of a hostfile.
+
+        with understudy.Nodes(4) as nodes:
+            volume = understudy.Volume(scan, nodes=nodes)
+
+    They end with close(), at the end of the `with` block, or with this process.
+    """
+
+    def __init__(self, ranks, hostfile=None, options=()):
+        self._folder = tempfile.TemporaryDirectory(prefix="understudy-")
+        folder = Path(self._folder.name) / "nodes"
+        folder.mkdir(mode=0o700)
+        words = [program(), "serve", "-n", str(int(ranks)), "--folder", str(folder), "--image-time", "0", "--while", str(os.getpid())]
+        words += ["--hostfile", os.fspath(hostfile)] if hostfile else []
+        self._log = Path(self._folder.name) / "log"
+        with self._log.open("wb") as log:
+            self._process = subprocess.Popen(words + list(options), stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+        self.socket = str(folder / "nodes.sock")
+        while self.running() and not os.path.exists(self.socket):
+            time.sleep(0.01)
+        if not self.running():
+            said = self._log.read_text(errors="replace").strip()
+            self.close()
+            raise NodesLost(said or "the render nodes could not be started")
+
+    def running(self):
+        return self._process.poll() is None
+
+    def close(self):
+        self._process.terminate()
+        self._process.wait()
+        self._folder.cleanup()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+class Report(dict):
+    """A run's figures, by the keys of docs/report.md, also as attributes: report.volumes[0].draws["substituted"]."""
+
+    def __getattr__(self, name):
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"the report has no '{name}'; it has {', '.join(self)}") from None
+
+
+def read_report(path):
+    """The report that `understudy run --report` or `understudy render --report` wrote."""
+    return json.loads(Path(path).read_text(encoding="utf-8"), object_hook=Report)
+
+
+def run(command, nodes=0, options=(), check=True, **more):
+    """Runs a viewer under Understudy, and returns its Report, with the viewer's exit status as `exit_status`.
+
+    command  the viewer and its arguments
+    nodes    MPI ranks; 0: volumes are rendered inside the viewer
+    options  further options of `understudy run`, as ["--error", "1/255"]
+    check    raise subprocess.CalledProcessError where the viewer ends with another status than 0
+    more     for subprocess.run(), as cwd and env
+    """
+    with tempfile.TemporaryDirectory(prefix="understudy-") as folder:
+        path = Path(folder) / "report.json"
+        words = [program(), "run", "-n", str(int(nodes)), "--report", str(path), *options, "--", *map(os.fspath, command)]
+        status = subprocess.run(words, check=check, **more).returncode
+        report = read_report(path)
+    report["exit_status"] = status
+    return report

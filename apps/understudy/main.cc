@@ -5,6 +5,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@
 #include "apps/understudy/gl_server/gl_server.h"
 #include "apps/understudy/launch/listener.h"
 #include "apps/understudy/launch/relay.h"
+#include "apps/understudy/option_table/usage_error.h"
 #include "apps/understudy/study/study.h"
 #include "compositor/logging/log.h"
 #include "spu/former_names.h"
@@ -65,7 +67,10 @@ int main(int argc, char** argv) try {
     // The library takes them last to first, and without the program's name.
     app.parse(std::vector<std::string>(line.own.rbegin(), line.own.rend() - 1));
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : launcher::usage_error;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    std::fprintf(stderr, "%s\n",
+                 launcher::usage_error_text(app, std::span(line.own).subspan(1), error).c_str());
+    return launcher::usage_error;
   }
   return chosen();
 } catch (const std::exception& error) {

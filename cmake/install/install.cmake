@@ -75,11 +75,14 @@ install_component(compositor
   TARGETS transport understudy_transport logging understudy_logging compositor understudy_compositor loading
     understudy_loading pixels understudy_pixels nodes understudy_exchange
   HEADERS ${compositor_headers})
-install_component(spu
-  TARGETS dispatch understudy_dispatch report understudy_report program_analysis understudy_program_analysis spu
-    understudy_spu
-  HEADERS spu/unit_description.h spu/chain.h spu/driver/driver.h spu/options.h spu/registry/assemble.h
-    spu/track/share_group.h)
+# A glslang that is built here is not installed.
+if(NOT TARGET glslang)
+  install_component(spu
+    TARGETS dispatch understudy_dispatch report understudy_report program_analysis understudy_program_analysis spu
+      understudy_spu
+    HEADERS spu/unit_description.h spu/chain.h spu/driver/driver.h spu/options.h spu/registry/assemble.h
+      spu/track/share_group.h)
+endif()
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/UnderstudyConfig.cmake.in
   ${CMAKE_CURRENT_BINARY_DIR}/UnderstudyConfig.cmake INSTALL_DESTINATION ${package_folder})

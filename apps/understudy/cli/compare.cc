@@ -10,6 +10,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "apps/understudy/cli/output_file.h"
+
 namespace understudy::launcher {
 namespace {
 
@@ -86,7 +88,8 @@ void add_compare(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* compare = app.add_subcommand("compare", "how far two images (PNG or PFM) are apart");
   compare->add_option("A", arguments->a, "image; beside frame.pfm, frame_alpha.pfm is its alpha")->required();
   compare->add_option("B", arguments->b, "image of the same size")->required();
-  compare->add_option("--map", arguments->map, "write the difference as a PNG; white is the largest");
+  compare->add_option("--map", arguments->map, "write the difference as a PNG; white is the largest")
+      ->check(can_be_written(".png"));
   compare->callback([arguments, &chosen] {
     chosen = [arguments] {
       const RgbaImage a = read_image(arguments->a);

@@ -1,245 +1,71 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/cli/doctor.h"
 
-#include <GL/glx.h>
-#include <dlfcn.h>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <sys/ptrace.h>
-#include <sys/socket.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <cerrno>
+#include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
-#include <optional>
-#include <string>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <vector>
 
-#include "apps/understudy/hosts/mpi_launcher.h"
-#include "apps/understudy/processes/installation.h"
-#include "apps/understudy/sandbox/sandbox.h"
-#include "volume/offscreen/egl.h"
-#include "volume/offscreen/osmesa.h"
+#include "apps/understudy/doctor/deep_checks.h"
+#include "apps/understudy/doctor/system_checks.h"
 
 namespace understudy::launcher {
 namespace {
 
-constexpr unsigned probe_seconds = 15;
-
-struct Finding {
-  bool works = false;
-  std::string what;  ///< what was found, or what is missing
+struct DoctorArguments {
+  bool deep = false;
+  bool json = false;
 };
 
-struct Check {
-  const char* name;
-  Finding (*look)();
-  const char* fix;
-};
+void print_line(const NamedFinding& found) {
+  if (found.finding.works)
+    fmt::print("ok       {:18}{}\n", found.name, found.finding.what);
+  else
+    fmt::print("missing  {:18}{}; fix: {}\n", found.name, found.finding.what, found.fix);
+  std::fflush(stdout);
+}
 
-/// A library that is opened when asked for, so that this program starts where it is missing.
-class Library {
- public:
-  explicit Library(const char* name) : handle_(dlopen(name, RTLD_NOW | RTLD_LOCAL)) {}
-  explicit operator bool() const { return handle_ != nullptr; }
-  template <typename Function>
-  Function function(const char* name) const {
-    return reinterpret_cast<Function>(dlsym(handle_, name));
+void print_json(const std::vector<NamedFinding>& findings) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const NamedFinding& found : findings) {
+    nlohmann::ordered_json one{
+        {"name", found.name}, {"works", found.finding.works}, {"what", found.finding.what}, {"fix", nullptr}};
+    if (!found.finding.works) one["fix"] = found.fix;
+    all.push_back(std::move(one));
   }
+  fmt::print("{}\n", all.dump(2));
+}
 
- private:
-  void* handle_;  // never closed: drivers do not like it, and the probe's process ends soon
-};
-
-using GetString = const GLubyte* (*)(GLenum);
-
-Finding described(GetString get_string) {
-  if (get_string == nullptr) return {false, "glGetString is missing"};
-  const auto text = [&](GLenum name) {
-    const auto* value = reinterpret_cast<const char*>(get_string(name));
-    return std::string(value != nullptr ? value : "?");
+int doctor(const DoctorArguments& arguments) {
+  const auto told = [&](const NamedFinding& found) {
+    if (!arguments.json) print_line(found);
   };
-  return {true, fmt::format("OpenGL {}, {}", text(GL_VERSION), text(GL_RENDERER))};
-}
-
-Finding look_at_x() {
-  const char* name = std::getenv("DISPLAY");
-  if (name == nullptr) return {false, "DISPLAY is not set"};
-  const Library x11("libX11.so.6");
-  if (!x11) return {false, "libX11.so.6 is missing"};
-  Display* display = x11.function<decltype(&XOpenDisplay)>("XOpenDisplay")(nullptr);
-  if (display == nullptr) return {false, fmt::format("no X server answers at DISPLAY={}", name)};
-  return {true, fmt::format("X server at {}", name)};
-}
-
-Finding look_at_glx() {
-  if (const Finding x = look_at_x(); !x.works) return {false, "needs X: " + x.what};
-  const Library x11("libX11.so.6");
-  const Library gl("libGL.so.1");
-  if (!gl) return {false, "libGL.so.1 is missing"};
-  Display* display = x11.function<decltype(&XOpenDisplay)>("XOpenDisplay")(nullptr);
-  std::array<int, 6> wanted{GLX_RGBA, GLX_DOUBLEBUFFER, GLX_DEPTH_SIZE, 16, None, None};
-  XVisualInfo* visual = gl.function<decltype(&glXChooseVisual)>("glXChooseVisual")(display, 0, wanted.data());
-  if (visual == nullptr) return {false, "the X server offers no visual with OpenGL"};
-  XSetWindowAttributes attributes{};
-  const Window root = RootWindow(display, visual->screen);
-  attributes.colormap =
-      x11.function<decltype(&XCreateColormap)>("XCreateColormap")(display, root, visual->visual, AllocNone);
-  const Window window = x11.function<decltype(&XCreateWindow)>("XCreateWindow")(
-      display, root, 0, 0, 16, 16, 0, visual->depth, InputOutput, visual->visual, CWColormap | CWBorderPixel,
-      &attributes);
-  const GLXContext context =
-      gl.function<decltype(&glXCreateContext)>("glXCreateContext")(display, visual, nullptr, True);
-  if (context == nullptr ||
-      gl.function<decltype(&glXMakeCurrent)>("glXMakeCurrent")(display, window, context) == False) {
-    return {false, "the X server gives no OpenGL context"};
+  std::vector<NamedFinding> findings = system_findings(told);
+  bool works = true;
+  if (arguments.deep) {
+    std::vector<NamedFinding> deep = deep_findings(told);
+    works = std::ranges::all_of(deep, [](const NamedFinding& found) { return found.finding.works; });
+    findings.insert(findings.end(), std::make_move_iterator(deep.begin()), std::make_move_iterator(deep.end()));
   }
-  return described(gl.function<GetString>("glGetString"));
-}
-
-Finding look_at_egl() {
-  const volume::offscreen::Egl egl;
-  egl.open_display(volume::offscreen::Egl::First::surfaceless, "desktop OpenGL context without a surface",
-                   [&](EGLDisplay display) {
-                     const EGLContext context = egl.create_context(display, {});
-                     return context != EGL_NO_CONTEXT &&
-                            egl.MakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
-                   });
-  return described(reinterpret_cast<GetString>(egl.GetProcAddress("glGetString")));
-}
-
-Finding look_at_osmesa() {
-  const volume::offscreen::Osmesa osmesa;
-  const OSMesaContext context = osmesa.create_context({.depth_bits = 24});
-  std::array<GLubyte, 16 * 16 * 4> image{};
-  if (context == nullptr || !osmesa.MakeCurrent(context, image.data(), GL_UNSIGNED_BYTE, 16, 16))
-    return {false, "libOSMesa gives no OpenGL context"};
-  return described(reinterpret_cast<GetString>(osmesa.GetProcAddress("glGetString")));
-}
-
-Finding look_at_mpi() {
-  const auto family = mpi_of_nodes();
-  if (!family) return {false, "there was no MPI when this was built"};
-  const auto found = find_mpi_launcher(*family);
-  if (const auto* const obstacle = std::get_if<std::string>(&found)) return {false, *obstacle};
-  const auto& launcher = std::get<MpiLauncher>(found);
-  return {true, fmt::format("{} at {}; between hosts it encrypts nothing", launcher.version.text,
-                            launcher.program.string())};
-}
-
-Finding look_at_nodes() {
-  const std::filesystem::path node = this_installation().node();
-  if (!std::filesystem::exists(node)) return {false, node.string() + " was not built"};
-  return {true, node.string()};
-}
-
-Finding look_at_injection_methods() {
-  const Installation here = this_installation();
-  for (const std::filesystem::path& part : {here.shim(), here.auditor(), here.entry_folder()}) {
-    if (!std::filesystem::exists(part)) return {false, part.string() + " was not built"};
-  }
-  return {true, "audit, preload and folder, in " + here.libraries.string()};
-}
-
-/// What can still be done in the sandbox of a GL server's processes: nothing, if it holds.
-std::vector<std::string> escapes() {
-  std::vector<std::string> found;
-  if (open("/proc/self/status", O_RDONLY | O_CLOEXEC) >= 0) found.emplace_back("files can be opened");
-  if (socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0) >= 0) found.emplace_back("sockets can be made");
-  if (ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) == 0) found.emplace_back("processes can be traced");
-  // Last: where it works, another program is here.
-  std::array<char*, 1> none{};
-  execve("/proc/self/exe", none.data(), none.data());
-  if (errno != EPERM) found.emplace_back("programs can be started");
-  return found;
-}
-
-Finding look_at_sandbox() {
-  const SandboxState state = Sandbox({}).close(Renderer::cpu);
-  if (!state.obstacle.empty())
-    return {false, state.obstacle + "; run --remote and serve --gl-server have none"};
-  if (const auto found = escapes(); !found.empty()) return {false, fmt::format("{}", fmt::join(found, ", "))};
-  const std::string landlock =
-      state.landlock > 0 ? fmt::format("and Landlock {}", state.landlock) : "alone; " + state.no_landlock;
-  return {true,
-          fmt::format("seccomp {}: processes of GL servers open no files, start no programs, make no sockets",
-                      landlock)};
-}
-
-constexpr std::array checks{
-    Check{"injection methods", look_at_injection_methods, "./run build"},
-    Check{"X", look_at_x,
-          "apt install xvfb; Xvfb :99 -screen 0 1280x1024x24 +extension GLX -noreset & export DISPLAY=:99"},
-    Check{"GLX", look_at_glx, "apt install libgl1 libglx-mesa0 libgl1-mesa-dri"},
-    Check{"EGL", look_at_egl, "apt install libegl1 libegl-mesa0 libgl1-mesa-dri"},
-    Check{"OSMesa", look_at_osmesa, "apt install libosmesa6"},
-    Check{"MPI", look_at_mpi, "apt install openmpi-bin libopenmpi-dev"},
-    Check{"sandbox", look_at_sandbox,
-          "a kernel with CONFIG_SECCOMP_FILTER, or a container that lets it be used"},
-    Check{"nodes", look_at_nodes, "apt install libopenmpi-dev openmpi-bin && ./run build"},
-};
-
-Finding finding_of(const Check& check) {
-  try {
-    return check.look();
-  } catch (const volume::offscreen::ContextUnavailable& absent) {
-    return {false, absent.what()};
-  }
-}
-
-/// Drivers may crash, hang or end their process: each check runs in a process of its own.
-Finding look_apart(const Check& check) {
-  std::array<int, 2> channel{};
-  if (pipe(channel.data()) != 0) return {false, std::strerror(errno)};
-  const pid_t probe = fork();
-  if (probe == 0) {
-    alarm(probe_seconds);
-    const Finding finding = finding_of(check);
-    const std::string message = (finding.works ? "+" : "-") + finding.what;
-    (void)!write(channel[1], message.data(), message.size());
-    _exit(0);
-  }
-  close(channel[1]);
-  std::string message;
-  std::array<char, 512> part{};
-  for (ssize_t count = 0; (count = read(channel[0], part.data(), part.size())) > 0;) {
-    message.append(part.data(), static_cast<std::size_t>(count));
-  }
-  close(channel[0]);
-  int status = 0;
-  waitpid(probe, &status, 0);
-  if (message.empty()) {
-    return {false, WIFSIGNALED(status)
-                       ? fmt::format("its library was killed by {}", strsignal(WTERMSIG(status)))
-                       : std::string("its library ended the process")};
-  }
-  return {message.front() == '+', message.substr(1)};
-}
-
-int doctor() {
-  for (const Check& check : checks) {
-    const Finding finding = look_apart(check);
-    if (finding.works) {
-      fmt::print("ok       {:18}{}\n", check.name, finding.what);
-    } else {
-      fmt::print("missing  {:18}{}; fix: {}\n", check.name, finding.what, check.fix);
-    }
-    std::fflush(stdout);
-  }
-  return 0;
+  if (arguments.json) print_json(findings);
+  return works ? 0 : 1;
 }
 
 }  // namespace
 
 void add_doctor(CLI::App& app, std::function<int()>& chosen) {
-  app.add_subcommand("doctor", "what of OpenGL, X, MPI works here, and how to mend what does not")
-      ->callback([&chosen] { chosen = doctor; });
+  const auto arguments = std::make_shared<DoctorArguments>();
+  CLI::App* subcommand =
+      app.add_subcommand("doctor", "what of OpenGL, X, MPI works here, and how to mend what does not");
+  subcommand->add_flag("--deep", arguments->deep,
+                       "also run a small viewer by each injection method, on two nodes and on a GL server; the "
+                       "exit status is 1 where its volume is not substituted");
+  subcommand->add_flag("--json", arguments->json, "print the findings as JSON");
+  subcommand->callback([arguments, &chosen] { chosen = [arguments] { return doctor(*arguments); }; });
 }
 
 }  // namespace understudy::launcher

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "apps/understudy/cli/loading_nodes.h"
+#include "apps/understudy/cli/output_file.h"
 #include "apps/understudy/cli/render_report.h"
 #include "apps/understudy/file_scene/file_scene.h"
 #include "apps/understudy/file_scene/load_progress.h"
@@ -130,11 +131,17 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* render_command = app.add_subcommand("render", "an image of a volume in a file, without a viewer");
   add_scene_options(*render_command, arguments->scene);
   add_loading_nodes(*render_command, arguments->nodes);
-  render_command->add_option("--out", arguments->out, "the image, over black")->type_name("P.png")->required();
+  render_command->add_option("--out", arguments->out, "the image, over black")
+      ->type_name("P.png")
+      ->required()
+      ->check(can_be_written(".png"));
   render_command
       ->add_option("--save-float", arguments->save_float, "the image before it is rounded, and its alpha")
-      ->type_name("F.pfm");
-  render_command->add_option("--report", arguments->report, "figures as JSON")->type_name("F.json");
+      ->type_name("F.pfm")
+      ->check(can_be_written(".pfm"));
+  render_command->add_option("--report", arguments->report, "figures as JSON")
+      ->type_name("F.json")
+      ->check(can_be_written());
   render_command->add_option("--frames", arguments->frames, "render as often, for the time")
       ->check(CLI::Range(1, max_frames))
       ->capture_default_str();

@@ -10,6 +10,7 @@
 
 #include "apps/understudy/cli/balance_option.h"
 #include "apps/understudy/cli/node_options.h"
+#include "apps/understudy/cli/output_file.h"
 #include "apps/understudy/cli/sort_option.h"
 #include "apps/understudy/cli/trace_option.h"
 #include "apps/understudy/launch/backend_option.h"
@@ -59,7 +60,9 @@ void add_options_of_the_table(CLI::App& subcommand, const std::shared_ptr<RunArg
           ->expected(0, 1)
           ->type_name(value);
     } else {
-      subcommand.add_option_function<std::string>(flag, take, help)->type_name(value);
+      CLI::Option* const taken =
+          subcommand.add_option_function<std::string>(flag, take, help)->type_name(value);
+      if (flag == "--report") taken->check(can_be_written());
     }
   }
 }
@@ -96,7 +99,8 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
       ->add_option("--trace", arguments->trace,
                    "record every call in FILE for `understudy replay`; other processes of the viewer are "
                    "recorded in FILE.PID")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(can_be_written());
   subcommand->add_flag(
       "--remote", arguments->remote,
       "run a viewer without OpenGL: a GL server beside the nodes executes its calls and sends images to its "

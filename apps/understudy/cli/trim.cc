@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/understudy/cli/output_file.h"
 #include "apps/understudy/offscreen/offscreen_contexts.h"
 #include "compositor/logging/log.h"
 #include "spu/player/player.h"
@@ -179,7 +180,10 @@ void add_trim(CLI::App& app, std::function<int()>& chosen) {
   subcommand->add_option("--frames", *frames, "the frames to keep, counted from 1")
       ->required()
       ->type_name("A-B");
-  subcommand->add_option("-o,--out", plan->out, "the shorter trace")->required()->type_name("OUT");
+  subcommand->add_option("-o,--out", plan->out, "the shorter trace")
+      ->required()
+      ->type_name("OUT")
+      ->check(can_be_written());
   subcommand->callback([plan, frames, &chosen] {
     plan->frames = parse_frame_range(*frames);
     chosen = [plan] {

@@ -37,15 +37,19 @@ OptionRow row_of(const CLI::Option& option) {
 
 }  // namespace
 
+std::vector<OptionRow> option_rows(const CLI::App& subcommand) {
+  std::vector<OptionRow> rows;
+  for (const CLI::Option* const option :
+       subcommand.get_options([](const CLI::Option* one) { return !one->get_group().empty(); }))
+    rows.push_back(row_of(*option));
+  return rows;
+}
+
 std::vector<SubcommandRow> option_table(const CLI::App& app) {
   std::vector<SubcommandRow> rows;
   for (const CLI::App* const subcommand : app.get_subcommands([](const CLI::App*) { return true; })) {
     if (subcommand->get_group().empty()) continue;
-    SubcommandRow row{subcommand->get_name(), subcommand->get_description(), {}};
-    for (const CLI::Option* const option :
-         subcommand->get_options([](const CLI::Option* one) { return !one->get_group().empty(); }))
-      row.options.push_back(row_of(*option));
-    rows.push_back(std::move(row));
+    rows.push_back({subcommand->get_name(), subcommand->get_description(), option_rows(*subcommand)});
   }
   return rows;
 }

@@ -24,6 +24,8 @@ struct SubcommandRow {
   std::vector<OptionRow> options;
 };
 
+/// Of one subcommand.
+std::vector<OptionRow> option_rows(const CLI::App& subcommand);
 /// Of a command line whose options stand in their groups already.
 std::vector<SubcommandRow> option_table(const CLI::App& app);
 

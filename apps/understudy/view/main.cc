@@ -5,9 +5,12 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "apps/understudy/cli/help_layout.h"
 #include "apps/understudy/cli/run.h"
+#include "apps/understudy/option_table/usage_error.h"
 #include "apps/understudy/view/view.h"
 #include "compositor/logging/log.h"
 
@@ -23,7 +26,10 @@ int main(int argc, char** argv) try {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : launcher::usage_error;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    std::fprintf(stderr, "%s\n", launcher::usage_error_text(app, words, error).c_str());
+    return launcher::usage_error;
   }
   return chosen();
 } catch (const std::exception& error) {

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "apps/understudy/cli/loading_nodes.h"
+#include "apps/understudy/cli/output_file.h"
 #include "apps/understudy/cli/view_program.h"
 #include "apps/understudy/file_scene/file_scene.h"
 #include "apps/understudy/view/view_state.h"
@@ -72,7 +73,10 @@ void add_view(CLI::App& app, std::function<int()>& chosen) {
           ->excludes(web);
   command->add_option("--orbit", arguments->script.orbit, "degrees of azimuth from one frame to the next")
       ->needs(frames);
-  command->add_option("--save", arguments->script.save, "the last frame")->type_name("P.png")->needs(frames);
+  command->add_option("--save", arguments->script.save, "the last frame")
+      ->type_name("P.png")
+      ->needs(frames)
+      ->check(can_be_written(".png"));
   command->callback([arguments, &chosen] { chosen = [arguments] { return view(*arguments); }; });
 }
 

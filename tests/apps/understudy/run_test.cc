@@ -90,7 +90,7 @@ std::ptrdiff_t width(const std::string& line) {
 
 TEST_F(UnderstudyRun, HelpFitsIntoAHundredColumns) {
   for (const char* const subcommand : {"", "run", "serve", "replay", "print", "trim", "render", "view", "study",
-                                       "compare", "key", "doctor", "units"}) {
+                                       "compare", "key", "doctor", "units", "completion"}) {
     const Result help = understudy(std::string(subcommand) + " --help");
     EXPECT_EQ(help.status, 0) << subcommand;
     std::istringstream lines(help.output);
@@ -107,6 +107,17 @@ TEST_F(UnderstudyRun, DoctorSaysWhetherTheSandboxOfGlServersHolds) {
   EXPECT_EQ(output.find("open no files, start no programs, make no sockets") != std::string::npos, has_seccomp);
 }
 
+TEST_F(UnderstudyRun, DoctorRunsAViewerByEachWay) {
+  const Result deep = understudy("doctor --deep --json");
+  const auto findings = nlohmann::json::parse(deep.output);
+  std::vector<std::string> works;
+  for (const auto& one : findings)
+    if (one["works"]) works.push_back(one["name"]);
+  EXPECT_THAT(works, ::testing::IsSupersetOf({"run, audit", "run, preload", "run, folder", "run, two nodes"}))
+      << deep.output;
+  EXPECT_EQ(findings.size(), 13U);
+}
+
 TEST_F(UnderstudyRun, ABadHostfileIsRefusedInOneLineBeforeAnythingStarts) {
   const auto file = [&](const std::string& text) {
     std::ofstream(folder_ / "hosts") << text;
@@ -117,7 +128,7 @@ TEST_F(UnderstudyRun, ABadHostfileIsRefusedInOneLineBeforeAnythingStarts) {
     for (const std::string& command :
          {"run --hostfile " + hostfile + " -- touch " + mark.string(),
           "serve --hostfile " + hostfile + " --socket " + (folder_ / "sock").string(),
-          "render synthetic:8x8x8 --hostfile " + hostfile + " --out " + mark.string()}) {
+          "render synthetic:8x8x8 --hostfile " + hostfile + " --out " + mark.string() + ".png"}) {
       const Result result = understudy(command);
       EXPECT_NE(result.status, 0) << command;
       EXPECT_THAT(result.output, HasSubstr(why)) << command;

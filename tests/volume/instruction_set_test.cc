@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <hwy/targets.h>
 
+#include <algorithm>
+#include <fstream>
+#include <initializer_list>
 #include <string>
 
 #include "tests/volume/scenes.h"
@@ -49,6 +52,29 @@ std::vector<Drawn> draw_on_all(const BrickStore& store, const RenderRequest& req
     all.push_back(std::move(drawn));
   }
   return all;
+}
+
+/// What the kernel of the system says of the first processor.
+bool processor_has(std::initializer_list<const char*> flags) {
+  std::ifstream file("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(file, line) && !line.starts_with("flags")) {
+  }
+  return std::ranges::all_of(flags, [&](const char* flag) {
+    return (line + " ").find(std::string(" ") + flag + " ") != std::string::npos;
+  });
+}
+
+// A release of Highway that brought new targets once turned the vector kernels off, and images took twelve
+// times as long without a word.
+TEST(InstructionSets, ChosenIsTheBestThatTheProcessorHas) {
+  const char* best = "";
+  if (processor_has({"sse4_1", "sse4_2", "aes", "pclmulqdq"})) best = "SSE4";
+  if ((HWY_TARGETS & HWY_AVX2) != 0 && processor_has({"avx2", "fma", "bmi1", "bmi2", "f16c"})) best = "AVX2";
+  if ((HWY_TARGETS & HWY_AVX3) != 0 &&
+      processor_has({"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"}))
+    best = "AVX3";
+  EXPECT_THAT(instruction_set(), ::testing::StartsWith(best)) << "AVX3_DL and others are kinds of AVX3";
 }
 
 TEST(InstructionSets, AllDrawTheSameImage) {

@@ -39,7 +39,7 @@ std::vector<Way> ways() {
 
 /// A ball that is densest in its middle, as raw bytes.
 std::filesystem::path written_volume(const std::filesystem::path& folder) {
-  const std::filesystem::path path = folder / fmt::format("ball.{0}x{0}x{0}.raw", edge);
+  std::filesystem::path path = folder / fmt::format("ball.{0}x{0}x{0}.raw", edge);
   std::ofstream file(path, std::ios::binary);
   for (int z = 0; z < edge; ++z)
     for (int y = 0; y < edge; ++y)

@@ -22,7 +22,6 @@ namespace understudy::launcher {
 namespace {
 
 using testing::AllOf;
-using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -240,7 +239,8 @@ TEST(MpiVersion, IsReadOfWhatTheLauncherSays) {
 /// A folder of programs that say what launchers say, alone on PATH but for the shell.
 class LaunchersOnPath : public testing::Test {
  protected:
-  LaunchersOnPath() : before_(std::getenv("PATH")) {
+  LaunchersOnPath() {
+    if (const char* const path = std::getenv("PATH")) before_ = path;
     std::string name = "/tmp/understudy-launchers-XXXXXX";
     folder_ = mkdtemp(name.data());
     setenv("PATH", folder_.c_str(), 1);

@@ -3,12 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace understudy::launcher {
 
 RunFigures::RunFigures(const std::filesystem::path& folder)
     : folder_(folder), counters_(spu::read_counters(folder)), without_(spu::processes_without_figures(folder)) {
   processes_.reserve(counters_.size());
   for (const spu::MappedCounters& process : counters_) processes_.push_back(process.get());
+}
+
+bool RunFigures::saw_frames() const {
+  return std::ranges::any_of(processes_,
+                             [](const spu::ProcessCounters* process) { return process->frames > 0; });
 }
 
 std::string RunFigures::summary() const {

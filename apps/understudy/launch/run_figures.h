@@ -19,6 +19,8 @@ class RunFigures {
   explicit RunFigures(const std::filesystem::path& folder);
 
   spu::Processes processes() const { return processes_; }
+  /// Whether any process of the viewer ended a frame.
+  bool saw_frames() const;
   /// The summary, and which figures are missing in it.
   std::string summary() const;
   /// The exit status of a run in which frames had to be substituted; `viewer`, the viewer's own, where that

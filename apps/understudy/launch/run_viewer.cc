@@ -232,6 +232,14 @@ void tell_what_happened(const spu::Options& options, const RunFolder& folder, co
   }
 }
 
+/// Where a viewer ended early and could have had no window: what is missing.
+void tell_of_a_missing_display(const Ending& ending, const RunFigures& figures) {
+  if (ending.exit_status() == 0 || std::getenv("DISPLAY") != nullptr || figures.saw_frames()) return;
+  say("DISPLAY is not set: a viewer with windows needs an X server, as Xvfb :99 -screen 0 1280x1024x24 "
+      "+extension GLX "
+      "-noreset & export DISPLAY=:99");
+}
+
 /// The run cannot begin; the text says why and what to do.
 class CannotRun : public std::runtime_error {
  public:
@@ -415,6 +423,7 @@ int run_planned(const RunArguments& arguments, const std::vector<std::string>& c
   if (relay) relay->end(server_patience_ms);
   nodes.reset();
   const RunFigures figures(folder.path());
+  tell_of_a_missing_display(ending, figures);
   tell_what_happened(plan.options, folder, figures);
   return arguments.required ? figures.required_status(ending.exit_status()) : ending.exit_status();
 }

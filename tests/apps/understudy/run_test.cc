@@ -16,6 +16,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <string>
@@ -105,6 +106,20 @@ TEST_F(UnderstudyRun, DoctorSaysWhetherTheSandboxOfGlServersHolds) {
   const std::string output = understudy("doctor").output;
   EXPECT_THAT(output, HasSubstr(has_seccomp ? "\nok       sandbox           seccomp" : "\nmissing  sandbox"));
   EXPECT_EQ(output.find("open no files, start no programs, make no sockets") != std::string::npos, has_seccomp);
+}
+
+TEST_F(UnderstudyRun, AViewerThatEndsWithoutADisplayIsToldOfIt) {
+  const auto said_with = [&](const std::string& display, const std::string& viewer) {
+    const std::optional<std::string> before =
+        std::getenv("DISPLAY") != nullptr ? std::optional<std::string>(std::getenv("DISPLAY")) : std::nullopt;
+    display.empty() ? unsetenv("DISPLAY") : setenv("DISPLAY", display.c_str(), 1);
+    const std::string said = understudy("run -- " + viewer).output;
+    before ? setenv("DISPLAY", before->c_str(), 1) : unsetenv("DISPLAY");
+    return said;
+  };
+  EXPECT_THAT(said_with("", "false"), HasSubstr("DISPLAY is not set: a viewer with windows needs an X server"));
+  EXPECT_THAT(said_with("", "true"), ::testing::Not(HasSubstr("DISPLAY")));
+  EXPECT_THAT(said_with(":1234", "false"), ::testing::Not(HasSubstr("DISPLAY")));
 }
 
 TEST_F(UnderstudyRun, DoctorRunsAViewerByEachWay) {

@@ -342,10 +342,13 @@ TEST_F(UnderstudyRun, StartsAnotherNodeGroupWhenARankIsKilledAndSaysSoInOneLine)
   EXPECT_TRUE(nothing_is_left());
 }
 
-TEST_F(UnderstudyRun, KeepsGoingWhenTheReportCannotBeWritten) {
-  const Result result = understudy("run --report " + (folder_ / "missing" / "r.json").string() + " -- true");
-  EXPECT_EQ(result.status, 0);
-  EXPECT_THAT(result.output, HasSubstr("cannot write the report"));
+TEST_F(UnderstudyRun, AReportThatCannotBeWrittenIsToldBeforeTheViewerStarts) {
+  const fs::path mark = folder_ / "started";
+  const Result result =
+      understudy("run --report " + (folder_ / "missing" / "r.json").string() + " -- touch " + mark.string());
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.output, HasSubstr("cannot be written: No such file or directory"));
+  EXPECT_FALSE(fs::exists(mark));
 }
 
 TEST(UnderstudyCompare, PrintsItsThreeLinesAndTellsWhatItCannotRead) {

@@ -46,10 +46,18 @@ FloatImage image_of(const volume::ImageView& image, const volume::Rect& window) 
 
 }  // namespace
 
-ArrayVolume::ArrayVolume(const Scalars& scalars, const std::string& nodes)
-    : scalars_(scalars),
-      service_(nodes.empty() ? compositor::embedded_service()
-                             : compositor::remote_render_service(nodes, patience_with_nodes_ms)) {}
+ArrayVolume::ArrayVolume(const Scalars& scalars, const std::string& nodes) : scalars_(scalars), nodes_(nodes) {
+  connect();
+}
+
+void ArrayVolume::connect() {
+  try {
+    service_ = nodes_.empty() ? compositor::embedded_service()
+                              : compositor::remote_render_service(nodes_, patience_with_nodes_ms);
+  } catch (const compositor::ServiceLost& lost) {
+    throw NodesLost(lost.reason());
+  }
+}
 
 void ArrayVolume::load(const launcher::FileScene& scene) {
   loaded_.reset();
@@ -73,7 +81,18 @@ FloatImage ArrayVolume::render(const launcher::SceneArguments& arguments, const 
     return loaded.load.texels == scene.load.texels &&
            loaded.load.volume.ghost_layer >= scene.load.volume.ghost_layer;
   };
-  if (!loaded_ || !holds(*loaded_)) load(scene);
+  try {
+    if (!service_) connect();
+    if (!loaded_ || !holds(*loaded_)) load(scene);
+    return render_with(scene);
+  } catch (const compositor::ServiceLost& lost) {
+    loaded_.reset();
+    service_.reset();
+    throw NodesLost(lost.reason());
+  }
+}
+
+FloatImage ArrayVolume::render_with(const launcher::FileScene& scene) {
   const volume::RenderRequest request = request_of(scene, scene.image, figures_);
   return image_of(service_->render(request).image, request.window);
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -27,22 +28,33 @@ struct FloatImage {
   std::vector<float> rgba;
 };
 
+/// The render nodes do not answer; the next image asks for them again.
+class NodesLost : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Not for two threads at once.
 class ArrayVolume {
  public:
   /// Rendered in this process, or on the nodes behind `nodes`, a socket of `understudy serve`, for which it
-  /// waits. Throws compositor::ServiceLost.
+  /// waits. Throws NodesLost.
   explicit ArrayVolume(const Scalars& scalars, const std::string& nodes = {});
 
   /// `control_points`, where it is not empty, is a transfer function as in a file, in place of the named one.
-  /// What `arguments` says of a file is not looked at. Throws std::exception with a sentence, as commands do.
+  /// What `arguments` says of a file is not looked at. Throws NodesLost, or std::exception with a sentence, as
+  /// commands do.
   FloatImage render(const launcher::SceneArguments& arguments, const std::string& control_points = {});
 
  private:
+  void connect();
   void load(const launcher::FileScene& scene);
+  FloatImage render_with(const launcher::FileScene& scene);
 
   Scalars scalars_;
-  std::unique_ptr<compositor::RenderService> service_;
-  std::optional<launcher::FileScene> loaded_;  ///< as it is with the service
+  std::string nodes_;
+  std::unique_ptr<compositor::RenderService> service_;  ///< null: nodes that were lost
+  std::optional<launcher::FileScene> loaded_;           ///< as it is with the service
   volume::TexelFigures figures_;
 };
 

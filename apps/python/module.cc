@@ -7,6 +7,7 @@
 
 #include <array>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,6 +43,7 @@ class Volume {
     FloatImage image;
     {
       const py::gil_scoped_release released;
+      const std::scoped_lock lock(mutex_);
       image = volume_->render(arguments, control_points);
     }
     // The pixels become the array's.
@@ -59,6 +61,7 @@ class Volume {
   }
 
   py::array array_;
+  std::mutex mutex_;  // threads of Python render one after the other
   std::optional<ArrayVolume> volume_;
 };
 
@@ -93,6 +96,7 @@ PYBIND11_MODULE(_native, module) {
   using understudy::python::Volume;
   module.attr("__version__") = UNDERSTUDY_VERSION;
   module.def("transfer_functions", understudy::volume::built_in_control_points_names);
+  py::register_exception<understudy::python::NodesLost>(module, "NodesLost", PyExc_RuntimeError);
   py::class_<Volume>(module, "Volume")
       .def(py::init<py::array, const std::array<double, 3>&, const std::string&>())
       .def("render", [](Volume& volume, const py::dict& words, const std::string& control_points) {

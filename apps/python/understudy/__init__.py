@@ -19,11 +19,13 @@ wrong is said by ValueError, in the words of the command line; lost render nodes
 
 import contextlib
 import json
+import operator as operator_module
 import os
 import shutil
 import subprocess
 import tempfile
 import time
+import weakref
 from pathlib import Path
 
 import numpy
@@ -41,8 +43,8 @@ _CHOICES = {
 }
 
 
-class NodesLost(RuntimeError):
-    """The render nodes do not answer, or could not be started."""
+#: The render nodes do not answer, or could not be started. The next image asks for them again.
+NodesLost = _native.NodesLost
 
 
 def transfer_functions():
@@ -57,15 +59,20 @@ def _words(numbers, separator=","):
 def _control_points(table, value_range):
     """A transfer function's JSON, of a dict as in a file or of an (N, 4) array of plain RGBA over the value range."""
     if isinstance(table, dict):
-        return json.dumps(table)
+        try:
+            return json.dumps(table, allow_nan=False, default=float)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"transfer_function: {error}") from None
     rows = numpy.asarray(table, dtype=float)
+    if not numpy.isfinite(rows).all():
+        raise ValueError("transfer_function: an array with entries that are not finite")
     if rows.ndim != 2 or rows.shape[1] != 4 or len(rows) < 2:
         raise ValueError(f"transfer_function: an array of shape {rows.shape}; give (N, 4): red, green, blue and the opacity of "
                          "one voxel's length, each 0 to 1")
-    low, high = value_range or (0.0, 1.0)
-    points = [{"at": low + (high - low) * i / (len(rows) - 1), "colour": list(row[:3]), "opacity": row[3]}
+    low, high = (0.0, 1.0) if value_range is None else map(float, value_range)
+    points = [{"at": low + (high - low) * i / (len(rows) - 1), "colour": row[:3].tolist(), "opacity": float(row[3])}
               for i, row in enumerate(rows)]
-    return json.dumps({"positions": "values" if value_range else "range", "knots": points})
+    return json.dumps({"positions": "range" if value_range is None else "values", "knots": points})
 
 
 class Volume:
@@ -76,7 +83,7 @@ class Volume:
     spacing  distances between voxels along x, y and z, in any unit.
     nodes    a group of render nodes (Nodes); None: this process, on all cores.
 
-    8 and 16 bits are kept as they are, all other types as float32. NaN is transparent.
+    Integers of 8 and 16 bits are kept as they are, all other types as float32. NaN is transparent.
     """
 
     def __init__(self, array, spacing=(1.0, 1.0, 1.0), nodes=None):
@@ -92,12 +99,11 @@ class Volume:
         array = numpy.ascontiguousarray(array, dtype=array.dtype.newbyteorder("="))
         if len(spacing) != 3 or not all(float(distance) > 0 for distance in spacing):
             raise ValueError(f"spacing {spacing}; give three positive distances, along x, y and z")
+        if not (nodes is None or isinstance(nodes, Nodes)):
+            raise ValueError(f"nodes={nodes!r}: give understudy.Nodes(RANKS), or None")
         self.shape = array.shape
         self._nodes = nodes  # which live as long as this volume
-        try:
-            self._native = _native.Volume(array, [float(distance) for distance in spacing], nodes.socket if nodes else "")
-        except RuntimeError as error:
-            raise NodesLost(str(error)) from None
+        self._native = _native.Volume(array, [float(distance) for distance in spacing], "" if nodes is None else nodes.socket)
 
     def render(self, transfer_function="grey", camera=(30, 20, 4), size=(512, 512), step=1.0, *, value_range=None,
                operator="over", method="post-classified", tolerance=1e-3, termination=5e-6, surfaces=(), show_volume=True,
@@ -123,6 +129,9 @@ class Volume:
             if value not in _CHOICES[name]:
                 raise ValueError(f"{name}={value!r}: give one of {', '.join(repr(word) for word in _CHOICES[name] if word)}")
         named = isinstance(transfer_function, (str, os.PathLike))
+        if named and value_range is not None:
+            raise ValueError("value_range belongs to a transfer function that is an array")
+        surfaces = [surfaces] if isinstance(surfaces, (str, int, float)) else surfaces
         settings = {
             "transfer_function": os.fspath(transfer_function) if named else "grey",
             "camera": _words(camera), "size": size if isinstance(size, str) else "x".join(str(int(side)) for side in size),
@@ -135,9 +144,9 @@ class Volume:
                 settings[name] = _words(numbers)
         try:
             return self._native.render(settings, "" if named else _control_points(transfer_function, value_range))
+        except NodesLost as error:
+            raise NodesLost(f"{error}; is there a group of nodes still? understudy.Nodes starts another") from None
         except RuntimeError as error:
-            if self._nodes is not None and not self._nodes.running():
-                raise NodesLost(str(error)) from None
             raise ValueError(str(error)) from None
 
 
@@ -145,8 +154,9 @@ def render(array, transfer_function="grey", camera=(30, 20, 4), size=(512, 512),
            **settings):
     """One image of an array: Volume(array, spacing, nodes).render(…). `nodes` may be a number of ranks, for this image alone."""
     with contextlib.ExitStack() as stack:
-        if isinstance(nodes, int):
-            nodes = stack.enter_context(Nodes(nodes)) if nodes > 0 else None
+        if nodes is not None and not isinstance(nodes, Nodes):
+            ranks = operator_module.index(nodes)
+            nodes = stack.enter_context(Nodes(ranks)) if ranks > 0 else None
         return Volume(array, spacing, nodes).render(transfer_function, camera, size, step, **settings)
 
 
@@ -185,24 +195,34 @@ class Nodes:
         folder.mkdir(mode=0o700)
         words = [program(), "serve", "-n", str(int(ranks)), "--folder", str(folder), "--image-time", "0", "--while", str(os.getpid())]
         words += ["--hostfile", os.fspath(hostfile)] if hostfile else []
-        self._log = Path(self._folder.name) / "log"
-        with self._log.open("wb") as log:
-            self._process = subprocess.Popen(words + list(options), stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+        log_path = Path(self._folder.name) / "log"
+        with log_path.open("wb") as log:
+            # Apart from the terminal's Ctrl-C, which Python may go on after.
+            self._process = subprocess.Popen(words + list(options), stdin=subprocess.DEVNULL, stdout=log, stderr=log,
+                                             start_new_session=True)
+        self._end = weakref.finalize(self, Nodes._ended, self._process, self._folder)
         self.socket = str(folder / "nodes.sock")
-        while self.running() and not os.path.exists(self.socket):
-            time.sleep(0.01)
-        if not self.running():
-            said = self._log.read_text(errors="replace").strip()
+        try:
+            patience = time.monotonic() + 60
+            while self.running() and not os.path.exists(self.socket) and time.monotonic() < patience:
+                time.sleep(0.01)
+            if not os.path.exists(self.socket):
+                raise NodesLost(log_path.read_text(errors="replace").strip() or "the render nodes could not be started")
+        except BaseException:
             self.close()
-            raise NodesLost(said or "the render nodes could not be started")
+            raise
+
+    @staticmethod
+    def _ended(process, folder):
+        process.terminate()
+        process.wait()
+        folder.cleanup()
 
     def running(self):
         return self._process.poll() is None
 
     def close(self):
-        self._process.terminate()
-        self._process.wait()
-        self._folder.cleanup()
+        self._end()
 
     def __enter__(self):
         return self
@@ -212,7 +232,8 @@ class Nodes:
 
 
 class Report(dict):
-    """A run's figures, by the keys of docs/report.md, also as attributes: report.volumes[0].draws["substituted"]."""
+    """A run's figures, by the keys of docs/report.md, also as attributes where a dict has none of that name:
+    report.volumes[0].draws.substituted."""
 
     def __getattr__(self, name):
         try:

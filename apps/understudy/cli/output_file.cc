@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/cli/output_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <system_error>
 
 namespace understudy::launcher {
 
 std::string obstacle_to_writing(const std::string& path) {
-  // Of a file that is there nothing is taken away, and one that is made for the question goes again.
-  const bool there = ::access(path.c_str(), F_OK) == 0;
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
-  // A pipe that nobody reads yet can be written later.
-  if (file < 0)
-    return errno == ENXIO ? "" : fmt::format("{} cannot be written: {}", path, std::strerror(errno));
-  ::close(file);
-  if (!there) ::unlink(path.c_str());
-  return {};
+  namespace fs = std::filesystem;
+  // Nothing is opened: a pipe's reader would take that for its end.
+  std::error_code unknown;
+  const bool there = fs::exists(path, unknown);
+  if (there && fs::is_directory(path, unknown)) return fmt::format("{} is a folder", path);
+  // Of a link to a file that is not there yet, where that will be.
+  const fs::path target = fs::weakly_canonical(path, unknown);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const bool can = there ? ::access(path.c_str(), W_OK) == 0 : ::access(folder.c_str(), W_OK | X_OK) == 0;
+  return can ? "" : fmt::format("{} cannot be written: {}", path, std::strerror(errno));
 }
 
 CLI::Validator can_be_written(const std::string& ending) {

@@ -174,7 +174,9 @@ constexpr std::array checks{
     Check{"GLX", look_at_glx, "apt install libgl1 libglx-mesa0 libgl1-mesa-dri"},
     Check{"EGL", look_at_egl, "apt install libegl1 libegl-mesa0 libgl1-mesa-dri"},
     Check{"OSMesa", look_at_osmesa, "apt install libosmesa6"},
-    Check{"MPI", look_at_mpi, "apt install openmpi-bin libopenmpi-dev"},
+    Check{
+        "MPI", look_at_mpi,
+        "the MPI that the nodes were built with, or nodes that are built with the one here (docs/install.md)"},
     Check{"sandbox", look_at_sandbox,
           "a kernel with CONFIG_SECCOMP_FILTER, or a container that lets it be used"},
     Check{"nodes", look_at_nodes, "apt install libopenmpi-dev openmpi-bin && ./run build"},

@@ -27,13 +27,22 @@ std::string in_quotes(std::string_view text) {
   return "'" + out + "'";
 }
 
-/// Up to the first colon or semicolon, which is what a list of choices has room for.
+/// Up to the first colon, semicolon or bracket, which is what a list of choices has room for.
 std::string beginning(const std::string& description) {
   constexpr std::size_t most = 70;
-  std::string text = description.substr(0, description.find_first_of(":;\n"));
+  std::string text = description.substr(0, description.find_first_of(":;[]\n"));
+  while (text.ends_with(' ')) text.pop_back();
   if (text.size() <= most) return text;
   text.resize(text.rfind(' ', most) == std::string::npos ? most : text.rfind(' ', most));
   return text + " …";
+}
+
+/// In a list of zsh's _arguments a colon ends a part.
+std::string with_escaped_colons(const std::vector<std::string>& values) {
+  std::string out;
+  for (const char c : fmt::format("{}", fmt::join(values, " ")))
+    out += c == ':' ? std::string("\\:") : std::string(1, c);
+  return out;
 }
 
 std::string bash(std::string_view program, Rows subcommands) {
@@ -53,10 +62,20 @@ std::string bash(std::string_view program, Rows subcommands) {
   return fmt::format(R"(# bash completion of {0}
 _{0}() {{
   local current=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} words= files=false i
+  COMPREPLY=()
   for ((i = 1; i < COMP_CWORD; ++i)); do
-    # What follows is the viewer's command.
-    [[ ${{COMP_WORDS[i]}} != -- ]] || {{ COMPREPLY=($(compgen -c -f -- "$current")); return; }}
+    if [[ ${{COMP_WORDS[i]}} == -- ]]; then  # what follows is the viewer's command
+      compopt -o filenames 2>/dev/null
+      mapfile -t COMPREPLY < <(compgen -c -f -- "$current")
+      return
+    fi
   done
+  # Bash takes the '=' of --option=value for a word.
+  if [[ $current == = ]]; then
+    current=
+  elif [[ $before == = ]]; then
+    before=${{COMP_WORDS[COMP_CWORD-2]}}
+  fi
   case "${{COMP_WORDS[1]}} $before" in
 {2}    *)
       files=true
@@ -64,10 +83,13 @@ _{0}() {{
 {3}      esac
       ((COMP_CWORD > 1)) || {{ words='{1} --help --version'; files=false; }} ;;
   esac
-  COMPREPLY=($(compgen -W "$words" -- "$current"))
-  ! $files || ((${{#COMPREPLY[@]}} > 0)) || COMPREPLY=($(compgen -f -- "$current"))
+  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+  if $files && ((${{#COMPREPLY[@]}} == 0)); then
+    compopt -o filenames 2>/dev/null
+    mapfile -t COMPREPLY < <(compgen -f -- "$current")
+  fi
 }}
-complete -o filenames -F _{0} {0}
+complete -F _{0} {0}
 )",
                      program, fmt::join(names_of(subcommands), " "), values, options);
 }
@@ -83,7 +105,7 @@ std::string zsh(std::string_view program, Rows subcommands) {
         std::string text = fmt::format("{}[{}]", name, beginning(option.description));
         if (!option.value.empty())
           text += option.values.empty() ? ":value:_files"
-                                        : fmt::format(":value:({})", fmt::join(option.values, " "));
+                                        : fmt::format(":value:({})", with_escaped_colons(option.values));
         options += " \\\n      " + in_quotes(text);
       }
     }

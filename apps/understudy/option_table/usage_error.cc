@@ -92,13 +92,14 @@ std::optional<WrongValue> wrong_value(const CLI::App& subcommand, const std::str
     });
     if (!concerned) continue;
     for (std::size_t i = 0; i < words.size(); ++i) {
-      const bool own = std::ranges::find(names, option_name(words[i])) != names.end();
-      if (row.names.empty() && message.find(words[i]) != std::string::npos)
-        return WrongValue{names.back(), words[i], row.values};
-      if (!own) continue;
+      std::optional<std::string> value;
       const std::size_t equals = words[i].find('=');
-      if (equals != std::string::npos) return WrongValue{names.back(), words[i].substr(equals + 1), row.values};
-      if (i + 1 < words.size()) return WrongValue{names.back(), words[i + 1], row.values};
+      const bool own = std::ranges::find(names, option_name(words[i])) != names.end();
+      if (row.names.empty() && message.find(words[i]) != std::string::npos) value = words[i];
+      if (own && equals != std::string::npos) value = words[i].substr(equals + 1);
+      if (own && equals == std::string::npos && i + 1 < words.size()) value = words[i + 1];
+      if (value && std::ranges::find(row.values, *value) == row.values.end())
+        return WrongValue{names.back(), *value, row.values};
     }
   }
   return {};

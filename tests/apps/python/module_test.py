@@ -6,6 +6,8 @@ import os
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -96,6 +98,23 @@ class Images(unittest.TestCase):
         flat = understudy.render(self.array, surfaces=["40%,#ff0000"], show_volume=False, size=SIZE, spacing=(1, 1, 0.2))
         self.assertLess((flat[..., 3] > 0).sum(), (surface[..., 3] > 0).sum())
 
+    def test_threads_may_share_a_volume(self):
+        volume = understudy.Volume(self.array)
+        expected = {texels: volume.render("engine", size=SIZE, texels=texels) for texels in ("u8", "f32")}
+        wrong = []
+
+        def render(texels):
+            for _ in range(10):
+                if not numpy.array_equal(volume.render("engine", size=SIZE, texels=texels), expected[texels]):
+                    wrong.append(texels)
+
+        threads = [threading.Thread(target=render, args=(texels,)) for texels in ("u8", "f32", "u8")]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(wrong, [])
+
     def test_over_is_eight_bits(self):
         shown = understudy.over(self.image, (1, 1, 1))
         self.assertEqual((shown.dtype, shown[0, 0].tolist()), (numpy.uint8, [255, 255, 255]))
@@ -112,9 +131,29 @@ class Mistakes(unittest.TestCase):
         for settings, words in (({"camera": (1, 2)}, "3 numbers"), ({"size": (0, 5)}, "give 1 to"), ({"operator": "sum"}, "'add'"),
                                 ({"transfer_function": "heat"}, "one of grey"), ({"surfaces": ["x"]}, "no number"),
                                 ({"step": 0}, "positive"), ({"transfer_function": numpy.zeros((3, 3))}, r"\(N, 4\)"),
-                                ({"transfer_function": {"knots": 5}}, "knots"), ({"light": "sun"}, "'surfaces'")):
+                                ({"transfer_function": {"knots": 5}}, "knots"), ({"light": "sun"}, "'surfaces'"),
+                                ({"transfer_function": numpy.full((3, 4), numpy.nan)}, "not finite"),
+                                ({"value_range": (0, 1)}, "belongs to")):
             with self.subTest(settings):
                 self.assertRaisesRegex(ValueError, words, volume.render, **settings)
+
+    def test_nodes_come_back_after_a_rank_was_killed(self):
+        with understudy.Nodes(1) as nodes:
+            volume = understudy.Volume(ball(), nodes=nodes)
+            before = volume.render(size=SIZE)
+            ranks = subprocess.run(["pgrep", "-f", f"understudy-node --control {Path(nodes.socket).parent}"], check=False,
+                                   capture_output=True, text=True).stdout.split()
+            for rank in ranks:
+                subprocess.run(["kill", "-9", rank], check=False)
+            self.assertRaises(understudy.NodesLost, volume.render, size=SIZE)
+            after = None
+            for _ in range(200):
+                try:
+                    after = volume.render(size=SIZE)
+                    break
+                except understudy.NodesLost:
+                    time.sleep(0.1)
+            self.assertTrue(numpy.array_equal(before, after))
 
     def test_lost_nodes(self):
         with understudy.Nodes(1) as nodes:

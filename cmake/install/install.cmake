@@ -24,9 +24,11 @@ install(FILES apps/understudy/study/study_page.py apps/bench/vtk_mappers.py DEST
   COMPONENT runtime)
 set(pages ${CMAKE_BINARY_DIR}/share)
 install(FILES ${pages}/man/man1/understudy.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
-foreach(program node view viewer)
-  install(CODE "file(CONFIGURE OUTPUT \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1/understudy-${program}.1\"
-    CONTENT \".so man1/understudy.1\\n\")" COMPONENT runtime)
+foreach(program ${programs})
+  if(NOT program STREQUAL "understudy")
+    file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/man/${program}.1 CONTENT ".so man1/understudy.1\n")
+    install(FILES ${CMAKE_CURRENT_BINARY_DIR}/man/${program}.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
+  endif()
 endforeach()
 foreach(completion bash-completion/completions/understudy zsh/vendor-completions/_understudy
     fish/vendor_completions.d/understudy.fish)

@@ -33,17 +33,6 @@ class ArrayFile : public volume::VolumeFile {
   std::span<const std::byte> bytes_;
 };
 
-FloatImage image_of(const volume::ImageView& image, const volume::Rect& window) {
-  FloatImage whole{window.width, window.height, std::vector<float>(4 * window.pixels())};
-  const auto row = std::size_t(image.rect.width) * 4;
-  for (int y = 0; y < image.rect.height; ++y) {
-    const std::size_t from_top = std::size_t(window.height - 1 - (image.rect.y + y));
-    std::copy_n(image.rgba.data() + std::size_t(y) * row, row,
-                whole.rgba.data() + 4 * (from_top * std::size_t(window.width) + std::size_t(image.rect.x)));
-  }
-  return whole;
-}
-
 }  // namespace
 
 ArrayVolume::ArrayVolume(const Scalars& scalars, const std::string& nodes) : scalars_(scalars), nodes_(nodes) {
@@ -73,7 +62,8 @@ void ArrayVolume::load(const launcher::FileScene& scene) {
   loaded_ = scene;
 }
 
-FloatImage ArrayVolume::render(const launcher::SceneArguments& arguments, const std::string& control_points) {
+launcher::RgbaImage ArrayVolume::render(const launcher::SceneArguments& arguments,
+                                        const std::string& control_points) {
   launcher::FileScene scene = scene_of(arguments, scalars_.description);
   if (!control_points.empty())
     scene.image.control_points = launcher::control_points_in(nlohmann::json::parse(control_points));
@@ -92,9 +82,9 @@ FloatImage ArrayVolume::render(const launcher::SceneArguments& arguments, const 
   }
 }
 
-FloatImage ArrayVolume::render_with(const launcher::FileScene& scene) {
+launcher::RgbaImage ArrayVolume::render_with(const launcher::FileScene& scene) {
   const volume::RenderRequest request = request_of(scene, scene.image, figures_);
-  return image_of(service_->render(request).image, request.window);
+  return launcher::whole_window(service_->render(request).image, request.window);
 }
 
 }  // namespace understudy::python

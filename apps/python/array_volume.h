@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/understudy/file_scene/file_scene.h"
+#include "apps/understudy/images/image.h"
 #include "compositor/service.h"
 #include "volume/file/scalar_type.h"
 
@@ -19,13 +20,6 @@ namespace understudy::python {
 struct Scalars {
   std::span<const std::byte> bytes;
   volume::FileDescription description;
-};
-
-/// Premultiplied RGBA, four floats a pixel, the top row first.
-struct FloatImage {
-  int width = 0;
-  int height = 0;
-  std::vector<float> rgba;
 };
 
 /// The render nodes do not answer; the next image asks for them again.
@@ -41,15 +35,15 @@ class ArrayVolume {
   /// waits. Throws NodesLost.
   explicit ArrayVolume(const Scalars& scalars, const std::string& nodes = {});
 
-  /// `control_points`, where it is not empty, is a transfer function as in a file, in place of the named one.
-  /// What `arguments` says of a file is not looked at. Throws NodesLost, or std::exception with a sentence, as
-  /// commands do.
-  FloatImage render(const launcher::SceneArguments& arguments, const std::string& control_points = {});
+  /// Premultiplied, with alpha. `control_points`, where it is not empty, is a transfer function as in a file,
+  /// in place of the named one. What `arguments` says of a file is not looked at. Throws NodesLost, or
+  /// std::exception with a sentence, as commands do.
+  launcher::RgbaImage render(const launcher::SceneArguments& arguments, const std::string& control_points = {});
 
  private:
   void connect();
   void load(const launcher::FileScene& scene);
-  FloatImage render_with(const launcher::FileScene& scene);
+  launcher::RgbaImage render_with(const launcher::FileScene& scene);
 
   Scalars scalars_;
   std::string nodes_;

@@ -40,7 +40,7 @@ class Volume {
   }
 
   py::array_t<float> render(const launcher::SceneArguments& arguments, const std::string& control_points) {
-    FloatImage image;
+    launcher::RgbaImage image;
     {
       const py::gil_scoped_release released;
       const std::scoped_lock lock(mutex_);

@@ -47,17 +47,8 @@ double milliseconds_since(Clock::time_point start) {
 
 /// Over black, or as it is with its alpha.
 RgbaImage image_of(const volume::ImageView& image, const volume::Rect& window, bool with_alpha) {
-  RgbaImage file_image;
-  file_image.width = window.width;
-  file_image.height = window.height;
+  RgbaImage file_image = whole_window(image, window);
   file_image.has_alpha = with_alpha;
-  file_image.rgba.assign(4 * window.pixels(), 0.0F);
-  for (int y = 0; y < image.rect.height; ++y)
-    for (int x = 0; x < image.rect.width; ++x) {
-      const float* const from =
-          &image.rgba[4 * (std::size_t(y) * std::size_t(image.rect.width) + std::size_t(x))];
-      std::copy_n(from, 4, file_image.pixel(image.rect.x + x, window.height - 1 - (image.rect.y + y)));
-    }
   if (!with_alpha)
     for (std::size_t i = 3; i < file_image.rgba.size(); i += 4) file_image.rgba[i] = 1;
   return file_image;

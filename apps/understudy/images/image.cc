@@ -148,6 +148,15 @@ void write_float_map(const std::filesystem::path& path, const RgbaImage& image, 
 
 }  // namespace
 
+RgbaImage whole_window(const volume::ImageView& image, const volume::Rect& window) {
+  RgbaImage whole{window.width, window.height, true, std::vector<float>(4 * window.pixels())};
+  const auto row = 4 * std::size_t(image.rect.width);
+  for (int y = 0; y < image.rect.height; ++y)
+    std::copy_n(image.rgba.data() + std::size_t(y) * row, row,
+                whole.pixel(image.rect.x, window.height - 1 - (image.rect.y + y)));
+  return whole;
+}
+
 RgbaImage read_image(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) fail(path, std::strerror(errno));

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "volume/image.h"
+
 namespace understudy::launcher {
 
 constexpr int max_image_side = 16384;
@@ -21,6 +23,9 @@ struct RgbaImage {
   float* pixel(int x, int y) { return &rgba[4 * (static_cast<std::size_t>(y) * width + x)]; }
   const float* pixel(int x, int y) const { return &rgba[4 * (static_cast<std::size_t>(y) * width + x)]; }
 };
+
+/// A rendered image, premultiplied, in all of its window: transparent where it has no pixels.
+RgbaImage whole_window(const volume::ImageView& image, const volume::Rect& window);
 
 /// 0 to 1 as a byte, rounded to nearest; values outside are clamped, and what is no number is 0.
 constexpr std::uint8_t byte_of(float value) {

@@ -236,7 +236,7 @@ const char* glsl_type(const StageInput& input) {
   }
 }
 
-/// The application's vertex stage, linked to capture gl_Position and the inputs of `names`; 0 and the driver's
+/// The application's vertex stage, linked to capture gl_Position and the outputs of `names`; 0 and the driver's
 /// words where that does not link.
 GLuint link_observer(const GlContext& context, const ProgramRecord& record, GLuint application,
                      const std::vector<const char*>& names, std::string& trouble) {
@@ -261,22 +261,56 @@ GLuint link_observer(const GlContext& context, const ProgramRecord& record, GLui
   return 0;
 }
 
-std::string interpolation_of(const program::StageFacts& facts, const std::string& name) {
-  for (const program::Input& input : facts.inputs) {
-    if (input.name != name) continue;
-    if (input.interpolation == program::Interpolation::flat) return "flat";
-    if (input.interpolation == program::Interpolation::no_perspective) return "noperspective";
-  }
-  return {};
+/// What the texts of one stage say; null where they are not understood.
+std::optional<program::StageFacts> facts_of(const GlContext& context, program::Stage stage,
+                                            const std::vector<std::string>& sources) {
+  program::StageFinding finding = program::analyse(stage, sources, {}, context.extensions);
+  auto* facts = std::get_if<program::StageFacts>(&finding);
+  return facts == nullptr ? std::nullopt : std::optional(std::move(*facts));
 }
 
-/// What queries do not tell. A text that is not understood leaves all inputs smooth: its volume is refused.
-void read_interpolation(const GlContext& context, const ProgramRecord& record, ProgramStages& stages) {
-  const program::StageFinding finding =
-      program::analyse(program::Stage::fragment, record.fragment_sources, {}, context.extensions);
-  const auto* facts = std::get_if<program::StageFacts>(&finding);
-  if (facts == nullptr) return;
-  for (StageInput& input : stages.inputs) input.interpolation = interpolation_of(*facts, input.name);
+const char* qualifier_of(program::Interpolation interpolation) {
+  switch (interpolation) {
+    case program::Interpolation::flat:
+      return "flat";
+    case program::Interpolation::no_perspective:
+      return "noperspective";
+    case program::Interpolation::smooth:
+      break;
+  }
+  return "";
+}
+
+/// Reads the texts for what queries do not tell: how inputs are interpolated, and which outputs of the vertex
+/// stage they read. Inputs and outputs that have locations are matched by these, whatever their names. A text
+/// that is not understood leaves all inputs smooth and matched by name: its volume is refused. False where what
+/// is captured of the vertex stage would not be what the fragment stage reads.
+bool read_texts(const GlContext& context, const ProgramRecord& record, ProgramStages& stages) {
+  for (StageInput& input : stages.inputs) input.output = input.name;
+  const auto fragment = facts_of(context, program::Stage::fragment, record.fragment_sources);
+  if (!fragment) return true;
+  std::optional<program::StageFacts> vertex;
+  for (StageInput& input : stages.inputs) {
+    const auto read = std::ranges::find(fragment->inputs, input.name, &program::Input::name);
+    if (read == fragment->inputs.end()) continue;
+    input.interpolation = qualifier_of(read->interpolation);
+    if (read->location < 0 || !record.vertex_shader) continue;
+    if (!vertex) vertex = facts_of(context, program::Stage::vertex, record.vertex_sources);
+    if (!vertex) {
+      stages.trouble = "the vertex shader is not understood, and " + input.name + " is read by its location";
+      return false;
+    }
+    const auto written = std::ranges::find_if(vertex->outputs, [&](const program::Output& output) {
+      return output.location == read->location && output.packed_at == read->packed_at;
+    });
+    if (written == vertex->outputs.end()) continue;
+    input.output = written->name;
+    if (written->components == input.components) continue;
+    stages.trouble = fmt::format("the vertex shader writes {} components of {}, the fragment shader reads {}",
+                                 written->components, input.name, input.components);
+    return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -284,20 +318,19 @@ void read_interpolation(const GlContext& context, const ProgramRecord& record, P
 ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application) {
   ProgramStages stages;
   describe_fragment_stage(context, record, stages);
-  read_interpolation(context, record, stages);
-  if (!record.vertex_shader) return stages;
+  if (!read_texts(context, record, stages) || !record.vertex_shader) return stages;
 
   std::string trouble;
   std::vector<const char*> names;
-  for (const StageInput& input : stages.inputs) names.push_back(input.name.c_str());
+  for (const StageInput& input : stages.inputs) names.push_back(input.output.c_str());
   stages.observer = link_observer(context, record, application, names, trouble);
   if (stages.observer == 0) {
     // A fragment stage linked alone keeps all that it declares; the vertex stage may write only some of it.
     names.clear();
     for (StageInput& input : stages.inputs) {
-      const GLuint alone = link_observer(context, record, application, {input.name.c_str()}, trouble);
+      const GLuint alone = link_observer(context, record, application, {input.output.c_str()}, trouble);
       input.written = alone != 0;
-      if (input.written) names.push_back(input.name.c_str());
+      if (input.written) names.push_back(input.output.c_str());
       context.gl->DeleteProgram(alone);
     }
     stages.observer = link_observer(context, record, application, names, trouble);

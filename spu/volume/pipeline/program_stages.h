@@ -17,13 +17,15 @@ struct ProgramRecord;
 
 /// A varying that the fragment stage reads.
 struct StageInput {
-  std::string name;  ///< as a vertex shader writes it: "gl_TexCoord[0]", "gl_FrontColor", "coordinate"
+  std::string
+      name;  ///< in the fragment stage; of built-in ones, as a vertex shader writes it: "gl_TexCoord[0]"
   GLenum type = GL_FLOAT_VEC4;
   int components = 4;
   bool integer = false;
   int location = -1;            ///< as the driver has placed it, where the fragment stage stands alone
   std::string interpolation{};  ///< "flat", "noperspective"; empty: smooth
-  bool written = true;          ///< false: the vertex stage declares it at most, and no colour can depend on it
+  std::string output{};  ///< of the vertex stage that it reads: another name where both stand at one location
+  bool written = true;   ///< false: the vertex stage declares it at most, and no colour can depend on it
 };
 
 /// A uniform by name; array elements stand alone.

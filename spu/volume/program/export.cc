@@ -45,6 +45,14 @@ class Walk::SourceList {
 
 namespace {
 
+int location_of(const TQualifier& qualifier) {
+  return qualifier.hasLocation() ? int(qualifier.layoutLocation) : -1;
+}
+
+int packed_at(const TQualifier& qualifier) {
+  return qualifier.hasComponent() ? int(qualifier.layoutComponent) : 0;
+}
+
 Interpolation interpolation_of(const TQualifier& qualifier) {
   if (qualifier.flat) return Interpolation::flat;
   return qualifier.nopersp ? Interpolation::no_perspective : Interpolation::smooth;
@@ -102,7 +110,8 @@ void Walk::export_outputs(StageFacts& facts, SourceList& list) {
     for (Cell cell = variable.first; cell < variable.first + variable.cells; ++cell) {
       const Source source = named(variable, cell);
       Output output{.name = source.name, .component = source.component, .components = source.components};
-      if (qualifier.hasLocation()) output.location = int(qualifier.layoutLocation);
+      output.location = location_of(qualifier);
+      output.packed_at = packed_at(qualifier);
       if (qualifier.hasIndex()) output.index = int(qualifier.layoutIndex);
       output.interpolation = interpolation_of(qualifier);
       if (state_.reachable) {
@@ -124,6 +133,8 @@ void Walk::export_inputs(StageFacts& facts) {
                             .components = int(variable.cells / variable.elements),
                             .elements = int(variable.elements),
                             .integer = variable.type->isIntegerDomain(),
+                            .location = location_of(qualifier),
+                            .packed_at = packed_at(qualifier),
                             .interpolation = interpolation_of(qualifier),
                             .centroid = qualifier.centroid,
                             .sample = qualifier.sample});

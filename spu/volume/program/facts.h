@@ -123,6 +123,8 @@ struct Input {
   int components = 0;
   int elements = 1;  ///< of an array
   bool integer = false;
+  int location = -1;  ///< in the text; -1: not there
+  int packed_at = 0;  ///< its first component at that location: layout(component = ...)
   Interpolation interpolation = Interpolation::smooth;
   bool centroid = false;
   bool sample = false;
@@ -134,6 +136,7 @@ struct Output {
   int component = 0;
   int components = 1;
   int location = -1;     ///< in the text; -1: not there
+  int packed_at = 0;     ///< as Input has it
   int index = 0;         ///< 1: second colour of dual-source blending
   bool written = false;  ///< false: nothing is ever written to it
   Dependences on;

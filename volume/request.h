@@ -3,7 +3,9 @@
 // be saved, sent, replayed and tested alone.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -58,6 +60,10 @@ struct RenderRequest {
   std::optional<Light> light;
   /// A ray stops once its transparency falls below this; the error is at most this times the brightest colour.
   float termination = 5e-6F;
+  /// A ray ends behind the sample that makes it as opaque as this, at which the application ends its own rays;
+  /// 1: none ends so. What would follow is not shown, so parts of a ray do not add up to it: only where every
+  /// ray is cast whole. Post-classified, under `over`.
+  float opacity_limit = 1;
   std::optional<DepthImage> depth;
   /// Nodes that send each other floats may send half floats, each time rounded to 2^-11 of a value.
   bool may_travel_as_halves = false;
@@ -65,5 +71,12 @@ struct RenderRequest {
 
   bool operator==(const RenderRequest&) const = default;
 };
+
+/// Below this transparency nothing more of a ray is asked for: below `termination`, or where it has reached its
+/// opacity limit.
+inline float least_transparency(const RenderRequest& request) {
+  if (request.opacity_limit == 1) return request.termination;
+  return std::max(request.termination, std::nextafter(1 - request.opacity_limit, 1.0F));
+}
 
 }  // namespace understudy::volume

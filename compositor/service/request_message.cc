@@ -311,6 +311,7 @@ std::vector<std::byte> encode(const RenderRequest& request, std::optional<int> t
   write(out, request.surfaces);
   write(out, request.light);
   out.real(request.termination);
+  out.real(request.opacity_limit);
   write(out, request.depth);
   out.integer(request.may_travel_as_halves);
   for (const bool left_out : {request.optimizations.empty_bricks, request.optimizations.dominated_samples,
@@ -351,6 +352,7 @@ RenderRequest decode_request(std::span<const std::byte> payload, std::span<const
   request.surfaces = read_surfaces(in);
   request.light = read_light(in);
   request.termination = in.real32("termination");
+  request.opacity_limit = in.real32("opacity limit");
   request.depth = read_depth(in);
   request.may_travel_as_halves = in.flag("may_travel_as_halves");
   for (bool* left_out : {&request.optimizations.empty_bricks, &request.optimizations.dominated_samples,

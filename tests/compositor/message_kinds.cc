@@ -78,6 +78,7 @@ RenderRequest some_request(bool colours, bool depth) {
                     {{1, -0.5F}, {0.25F, 0}, {0, 2}}};
   }
   if (!colours) r.fog = Fog{{0.5, -0.25, 2}, 0.125, {{0, 0, 0, 1}, {0.1F, 0.2F, 0.3F, 0.5F}}};
+  r.opacity_limit = 0.95F;
   r.termination = 1e-5F;
   r.may_travel_as_halves = depth;
   r.optimizations = {true, !colours, depth};

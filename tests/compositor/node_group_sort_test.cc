@@ -174,6 +174,27 @@ TEST_F(NodeGroupSort, IntegralsAndChangedTexelsAreThoseOfOneProcess) {
   }
 }
 
+TEST_F(NodeGroupSort, RaysThatEndAtAnOpacityAreCastWhole) {
+  for (const Sort sort : {Sort::first, Sort::last}) {
+    const Group& group = start_sorted(4, sort);
+    const auto linked = connect(), embedded = embedded_service();
+    const Texture texture = some_texture();
+    upload(*linked, texture);
+    upload(*embedded, texture);
+    volume::RenderRequest request = request_on_steps(texture);
+    request.classification = volume::testing::smooth_table(256, 0.6F);
+    const volume::Image whole = image_of(*embedded, request);
+    request.opacity_limit = 0.7F;
+    const volume::Image ended = image_of(*embedded, request);
+    EXPECT_GT(largest_difference(whole, ended), 0.05);
+    if (sort == Sort::first)
+      EXPECT_LE(largest_difference(image_of(*linked, request), ended), 1e-5);
+    else
+      EXPECT_THROW(linked->render(request), RequestRefused);
+    dismiss(group);
+  }
+}
+
 TEST_F(NodeGroupSort, RefusesWhatIsRefusedAndGoesOn) {
   start_sorted(4, Sort::first);
   const auto linked = connect(), embedded = embedded_service();

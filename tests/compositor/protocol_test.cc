@@ -70,6 +70,7 @@ TEST(Protocol, EveryFieldOfARequestArrives) {
   EXPECT_EQ(got.light, sent.light);
   EXPECT_FALSE(decode_request(encode(some_request(true, false))).light.has_value());
   EXPECT_EQ(got.termination, sent.termination);
+  EXPECT_EQ(got.opacity_limit, sent.opacity_limit);
   ASSERT_TRUE(got.fog.has_value());
   EXPECT_EQ(got.fog->normal, sent.fog->normal);
   EXPECT_EQ(got.fog->offset, sent.fog->offset);

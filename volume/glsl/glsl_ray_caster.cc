@@ -343,7 +343,8 @@ void GlslRayCaster::set_uniforms(const MarchProgram& program, const RenderReques
   Rgba border = store_.border();
   for (float& component : border) component = float(component / unit);
   gl.Uniform4fv(program.border, 1, border.data());
-  gl.Uniform1f(program.termination, request.termination);
+  gl.Uniform1f(program.termination, least_transparency(request));
+  gl.Uniform1f(program.opacity_limit, request.opacity_limit);
   gl.Uniform1f(program.brick_cells, float(brick_cells_));
   if (prepared.function) {
     const TransferTable& table = *prepared.function;

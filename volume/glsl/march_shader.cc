@@ -28,6 +28,7 @@ uniform vec3 top, rounding;
 uniform vec3 has_border;
 uniform vec4 border;
 uniform float termination;
+uniform float opacity_limit;
 #ifdef COLOURS
 uniform mat4 map;
 uniform float multiply_by_alpha, alpha_above;
@@ -247,7 +248,7 @@ void main() {
 const char* composition(Operator op) {
   switch (op) {
     case Operator::over:
-      return "sum += (1.0 - sum.a) * colour;";
+      return "if (sum.a < opacity_limit || opacity_limit == 1.0) sum += (1.0 - sum.a) * colour;";
     case Operator::add:
       return "sum += colour;";
     case Operator::max:
@@ -336,6 +337,7 @@ MarchProgram link_march_program(const Functions& gl, const MarchVariant& variant
   program.multiply_by_alpha = at("multiply_by_alpha");
   program.alpha_above = at("alpha_above");
   program.termination = at("termination");
+  program.opacity_limit = at("opacity_limit");
   program.brick_cells = at("brick_cells");
   program.passes_before = at("passes_before");
   gl.UseProgram(program.name);

@@ -45,6 +45,7 @@ struct MarchProgram {
   GLint multiply_by_alpha = -1;
   GLint alpha_above = -1;
   GLint termination = -1;
+  GLint opacity_limit = -1;
   GLint brick_cells = -1;
   GLint passes_before = -1;  ///< of this image
 };

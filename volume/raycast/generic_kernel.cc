@@ -46,9 +46,10 @@ void lay_in_fog(const FogTable& fog, const std::array<float, 3>& p, Rgba& colour
   for (std::size_t k = 0; k < 3; ++k) colour[k] = at(3) * colour[k] + colour[3] * at(k);
 }
 
-void compose(Operator op, const Rgba& colour, Rgba& pixel) {
-  switch (op) {
+void compose(const Scene& scene, const Rgba& colour, Rgba& pixel) {
+  switch (scene.op) {
     case Operator::over: {
+      if (scene.opacity_limit < 1 && pixel[3] >= scene.opacity_limit) break;
       const float room = 1 - pixel[3];
       for (std::size_t k = 0; k < 4; ++k) pixel[k] += room * colour[k];
       break;
@@ -135,7 +136,7 @@ void walk_packet(const Scene& scene, const RayPacket& packet, float* rgba, Kerne
       }
       if (shows) {
         if (scene.fog != nullptr) lay_in_fog(*scene.fog, walk.position(), colour);
-        compose(scene.op, colour, pixel);
+        compose(scene, colour, pixel);
       }
       ++k;
       if (--until_test == 0) {

@@ -27,7 +27,9 @@ void shorten(float length, Rgba& colour) {
   colour[3] = kept;
 }
 
-void compose(const Rgba& colour, Rgba& pixel) {
+/// Up to an opacity of `limit`.
+void compose(const Rgba& colour, Rgba& pixel, float limit = 1) {
+  if (limit < 1 && pixel[3] >= limit) return;
   const float room = 1 - pixel[3];
   for (std::size_t k = 0; k < 4; ++k) pixel[k] += room * colour[k];
 }
@@ -105,7 +107,7 @@ class SegmentWalk {
       lay_in_light(from, sampled);
     const bool parted = !segments_.levels.empty() || segments_.pre_integrated;
     const float back = parted ? value_at(to) : front;
-    if (!parted || std::isnan(front) || std::isnan(back)) return compose(sampled, pixel);
+    if (!parted || std::isnan(front) || std::isnan(back)) return compose(sampled, pixel, scene_.opacity_limit);
     SurfaceSearch search{0, front, back};
     const auto point = [&](float share) {
       Place p;

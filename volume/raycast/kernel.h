@@ -48,6 +48,7 @@ struct Scene {
   Operator op = Operator::over;
   Filter filter = Filter::linear;
   float termination = 0;
+  float opacity_limit = 1;           ///< as of RenderRequest
   std::array<float, 3> top{};        ///< positions are clamped to [0, top]
   std::array<float, 3> rounding{};   ///< of positions, bounded
   std::array<bool, 3> has_border{};  ///< axes on which the border colour shows beyond [0, cells]

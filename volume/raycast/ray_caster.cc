@@ -86,7 +86,8 @@ Scene scene_of(const RenderRequest& request, const BrickStore& store, const RayS
   scene.store = &store;
   scene.op = request.op;
   scene.filter = request.filter;
-  scene.termination = request.termination;
+  scene.termination = least_transparency(request);
+  scene.opacity_limit = request.opacity_limit;
   scene.top = setup.top;
   scene.rounding = setup.rounding;
   set_held(scene);

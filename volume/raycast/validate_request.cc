@@ -217,6 +217,11 @@ void validate_region(const VolumeDescription& volume, const RenderRequest& reque
 void validate_ends(const RenderRequest& request) {
   if (!(request.termination >= 0 && request.termination < 1))
     refuse("termination threshold {} is outside [0, 1)", request.termination);
+  if (!(request.opacity_limit > 0 && request.opacity_limit <= 1))
+    refuse("opacity limit {} is outside (0, 1]", request.opacity_limit);
+  if (request.opacity_limit < 1 &&
+      (request.op != Operator::over || request.method != Method::post_classified || !request.surfaces.empty()))
+    refuse("an opacity limit is for post-classified samples under over, without surfaces");
   if (request.depth &&
       (!believable(request.depth->rect) || request.depth->depth.size() != request.depth->rect.pixels()))
     refuse("the depth image holds {} values for {} x {} pixels", request.depth->depth.size(),

@@ -113,6 +113,13 @@ HWY_INLINE Floats colour_at(const Colours& at, const Constants&) {
   return at[q];
 }
 
+/// Under `over`, where a pixel takes no more once it is opaque to a limit.
+HWY_INLINE Floats composed_to_limit(Floats pixel, Floats colour, Floats limit) {
+  const Floats alpha = hn::Broadcast<3>(pixel);
+  const Floats room = hn::IfThenElseZero(hn::Lt(alpha, limit), hn::Sub(hn::Set(FloatTag(), 1.0F), alpha));
+  return hn::MulAdd(room, colour, pixel);
+}
+
 template <Operator op>
 HWY_INLINE Floats composed(Floats pixel, Floats colour) {
   if constexpr (op == Operator::over) {

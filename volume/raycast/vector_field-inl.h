@@ -146,6 +146,8 @@ struct Constants {
         d,
         std::int32_t((wide(first[2]) * wide(counts[1]) + wide(first[1])) * wide(counts[0]) + wide(first[0])));
     neutral = hn::Set(f, neutral_value(scene.op));
+    is_limited = scene.op == Operator::over && scene.opacity_limit < 1;
+    opacity_limit = hn::Set(f, scene.opacity_limit);
     // What a first hit shows is opaque.
     termination = hn::Set(f, scene.op == Operator::over        ? scene.termination
                              : scene.op == Operator::first_hit ? 0.5F
@@ -204,11 +206,12 @@ struct Constants {
   const std::int32_t* distances;  // a byte each; four are gathered
   const float* bounds;            // of blocks, under a maximum; may be null
   bool skips, nearest, with_border;
+  bool is_limited = false;  // in opacity
   Operator op;
   std::array<Floats, 3> top, border_weight;
   std::array<Floats, 3> rounding;  // in blocks
   Ints blocks_x, blocks_y, first_block;
-  Floats neutral, termination, border;
+  Floats neutral, termination, opacity_limit, border;
 
   const float* entries = nullptr;  // of the transfer function, or of the pre-integration table
   Floats table_low, table_scale, table_last;

@@ -73,10 +73,25 @@ HWY_INLINE void compose(const std::array<Classified, samples_between_tests>& sam
 }
 
 template <typename Classified>
+HWY_INLINE void compose_to_limit(const std::array<Classified, samples_between_tests>& samples,
+                                 const Constants& constants, Colours& pixels) {
+  const Floats limit = constants.opacity_limit;
+  Colours mine = pixels;
+  for (const Classified& sample : samples) {
+    mine[0] = composed_to_limit(mine[0], colour_at<0>(sample, constants), limit);
+    mine[1] = composed_to_limit(mine[1], colour_at<1>(sample, constants), limit);
+    mine[2] = composed_to_limit(mine[2], colour_at<2>(sample, constants), limit);
+    mine[3] = composed_to_limit(mine[3], colour_at<3>(sample, constants), limit);
+  }
+  pixels = mine;
+}
+
+template <typename Classified>
 HWY_INLINE void compose(const std::array<Classified, samples_between_tests>& samples,
                         const Constants& constants, Colours& pixels) {
   switch (constants.op) {
     case Operator::over:
+      if (constants.is_limited) return compose_to_limit(samples, constants, pixels);
       return compose<Operator::over>(samples, constants, pixels);
     case Operator::add:
       return compose<Operator::add>(samples, constants, pixels);

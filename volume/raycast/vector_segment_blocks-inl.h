@@ -142,7 +142,7 @@ HWY_INLINE void take_segments(SegmentPacket& rays, const SegmentConstants& const
   std::array<bool, samples_between_tests> parted{};
   const bool any_parted = find_parted(rays, constants, source, block, parted);
 
-  if (!lit && !any_parted && (!pre_integrated || block.in_one_piece)) {
+  if (!lit && !constants.is_limited && !any_parted && (!pre_integrated || block.in_one_piece)) {
     Colours mine = pixels;
     for (const auto& at : block.classified) {
       mine[0] = composed<Operator::over>(mine[0], colour_at<0>(at, constants));
@@ -164,7 +164,7 @@ HWY_INLINE void take_segments(SegmentPacket& rays, const SegmentConstants& const
     if constexpr (lit) light_block(rays, constants, source, block, colours);
     for (std::size_t i = 0; i < samples_between_tests; ++i) {
       if (!parted[i]) {
-        compose_over(colours[i], pixels);
+        compose_sample(colours[i], constants, pixels);
         continue;
       }
       Segment segment;

@@ -236,6 +236,14 @@ HWY_INLINE void compose_over(const Colours& colours, Colours& pixels) {
   for (std::size_t q = 0; q < 4; ++q) pixels[q] = composed<Operator::over>(pixels[q], colours[q]);
 }
 
+/// A sample with all of its step.
+HWY_INLINE void compose_sample(const Colours& colours, const Constants& constants, Colours& pixels) {
+  if (!constants.is_limited) return compose_over(colours, pixels);
+#pragma GCC unroll 4
+  for (std::size_t q = 0; q < 4; ++q)
+    pixels[q] = composed_to_limit(pixels[q], colours[q], constants.opacity_limit);
+}
+
 template <typename Classified>
 HWY_INLINE void colours_of(const Classified& at, const Constants& constants, Colours& out) {
   out[0] = colour_at<0>(at, constants);

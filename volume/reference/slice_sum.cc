@@ -353,6 +353,7 @@ ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const
           for (int k = 0; k < 4; ++k) pixel[k] = std::clamp(colour[k] / colour[3], -largest, largest);
           return;
         }
+        if (request.opacity_limit < 1 && pixel[3] >= double(request.opacity_limit)) return;
         const double room = 1 - pixel[3];
         for (int k = 0; k < 4; ++k) switch (request.op) {
             case Operator::over:

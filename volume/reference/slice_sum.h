@@ -38,9 +38,9 @@ struct ReferenceImage {
 using Shade =
     std::function<std::array<double, 4>(const Vec3& t, const Vec3& way, const std::array<double, 4>& colour)>;
 
-/// Composes all planes (or steps) of `request` over the pixels of `rect` that lie in its window; never
-/// terminates early. `shade` stands for the request's light; its method and surfaces are not looked at. Throws
-/// std::invalid_argument when the matrix is singular.
+/// Composes all planes (or steps) of `request` over the pixels of `rect` that lie in its window; terminates
+/// early at the request's opacity limit alone. `shade` stands for the request's light; its method and surfaces
+/// are not looked at. Throws std::invalid_argument when the matrix is singular.
 ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const Rect& rect,
                          const Shade& shade = {});
 

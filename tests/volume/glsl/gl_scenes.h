@@ -76,6 +76,10 @@ inline std::vector<Scene> scenes() {
   sparse.classification = sparse_table();
   sparse.steps = steps_of(0.016);
   sparse.termination = 1e-5F;
+  RenderRequest& ended =
+      add("noise, ends at an opacity", noise(describe({19, 23, 17}, TexelType::u8), 10), usual);
+  ended.classification = smooth_table(256, 0.4F);
+  ended.opacity_limit = 0.9F;
   add("noise, bytes, border", noise(describe({19, 23, 17}, TexelType::u8, Wrap::border), 1), usual);
   add("noise, 16 bits, repeated, nearest", noise(describe({19, 23, 17}, TexelType::u16, Wrap::repeat), 2),
       usual)

@@ -15,8 +15,12 @@ namespace {
 
 constexpr const char* vertex_source =
     "#version 330\n"
-    "uniform mat4 camera; in vec3 corner; out vec3 corner_between;\n"
-    "void main() { corner_between = corner; gl_Position = camera * vec4(corner, 1.0); }\n";
+    "uniform mat4 camera; uniform vec4 eye; uniform bool way_from_eye; in vec3 corner;\n"
+    "out vec3 corner_between;\n"
+    "void main() {\n"
+    "  corner_between = corner - (way_from_eye ? eye.xyz : vec3(0.0));\n"
+    "  gl_Position = camera * vec4(corner, 1.0);\n"
+    "}\n";
 
 constexpr const char* fragment_source =
     "#version 330\n"
@@ -25,7 +29,8 @@ constexpr const char* fragment_source =
     "uniform mat4 inverse_camera; uniform vec4 eye; uniform vec3 extent; uniform float one_step;\n"
     "uniform int composition; uniform bool straight, divided, lit, whole_rays, jittered, noisy, reads_depth;\n"
     "uniform vec2 window; uniform float past_planes; uniform bool discards, over_background;\n"
-    "uniform vec3 background; uniform vec4 shown; uniform float shown_radius;\n"
+    "uniform vec3 background; uniform vec4 shown; uniform float shown_radius, ends_at;\n"
+    "uniform bool way_from_eye;\n"
     "uniform float in_croppingPlanes[6]; uniform int in_croppingFlags[32]; uniform float "
     "in_clippingPlanes[49];\n"
     "uniform mat4 in_volumeMatrix[1], in_textureDatasetMatrix[1], in_inverseTextureDatasetMatrix[1];\n"
@@ -71,7 +76,7 @@ constexpr const char* fragment_source =
     "  vec2 here = gl_FragCoord.xy;\n"
     "  if (discards && (any(lessThan(here, shown.xy)) || any(greaterThan(here, shown.zw)))) discard;\n"
     "  if (discards && shown_radius > 0.0 && distance(here, 0.5 * window) > shown_radius) discard;\n"
-    "  vec3 place = corner_between;\n"
+    "  vec3 place = corner_between + (way_from_eye ? eye.xyz : vec3(0.0));\n"
     "  vec3 along = eye.w != 0.0 ? place - eye.xyz : eye.xyz;\n"
     "  if (whole_rays) {\n"
     "    vec3 to_entry = (vec3(lessThan(along, vec3(0.0))) - place) / along;\n"
@@ -113,7 +118,7 @@ constexpr const char* fragment_source =
     "    count = min(count, ceil(length((end.xyz / end.w - place) * extent) / one_step));\n"
     "  }\n"
     "  vec4 sum = vec4(0.0); float largest = 0.0, least = 1.0, grey = 0.0, values = 0.0; uint taken = 0u;\n"
-    "  for (float i = 0.0; i < count && sum.a < 0.999; ++i) {\n"
+    "  for (float i = 0.0; i < count && sum.a < ends_at; ++i) {\n"
     "    vec3 at = from + (first + i) * step;\n"
     "    if (!kept(at)) continue;\n"
     "    vec4 sample_colour = classified(at);\n"
@@ -148,6 +153,11 @@ constexpr const char* wall_vertices =
 constexpr const char* wall_fragments =
     "#version 330\n"
     "out vec4 colour; void main() { colour = vec4(0.9, 0.8, 0.1, 1.0); }\n";
+
+/// The first of `from`, which must be there.
+void replace(std::string& text, std::string_view from, std::string_view to) {
+  text.replace(text.find(from), from.size(), to);
+}
 
 /// Two triangles a face, counterclockwise from outside.
 std::vector<GLfloat> box_triangles() {
@@ -395,12 +405,17 @@ void BoxRayCaster::set_up(GlApplication& app) {
   gl.TexImage3D(GL_TEXTURE_3D, 0, GL_R8, blob.x, blob.y, blob.z, 0, GL_RED, GL_UNSIGNED_BYTE, texels.data());
   gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
 
+  std::string vertices = vertex_source;
   std::string fragments = fragment_source;
-  constexpr std::string_view of_uniform = "vec3 h = tap;";
-  if (style.tap_of_a_texel)
-    fragments.replace(fragments.find(of_uniform), of_uniform.size(),
-                      "vec3 h = 1.0 / vec3(textureSize(field, 0));");
-  program_ = glsl_program(gl, vertex_source, fragments.c_str());
+  if (style.tap_of_a_texel) replace(fragments, "vec3 h = tap;", "vec3 h = 1.0 / vec3(textureSize(field, 0));");
+  if (style.matched_by_location) {
+    for (std::string* const source : {&vertices, &fragments})
+      replace(*source, "#version 330\n", "#version 330\n#extension GL_ARB_separate_shader_objects : require\n");
+    replace(vertices, "out vec3 corner_between;", "layout(location = 2) out vec3 corner_written;");
+    replace(vertices, "corner_between = ", "corner_written = ");
+    replace(fragments, "in vec3 corner_between;", "layout(location = 2) in vec3 corner_between;");
+  }
+  program_ = glsl_program(gl, vertices.c_str(), fragments.c_str());
   wall_program_ = glsl_program(gl, wall_vertices, wall_fragments);
   const std::vector<GLfloat> triangles = box_triangles();
   gl.GenVertexArrays(1, &box_);
@@ -464,6 +479,8 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
   gl().Uniform1i(at("discards"), style.discards ? 1 : 0);
   gl().Uniform4fv(at("shown"), 1, style.shown.data());
   gl().Uniform1f(at("shown_radius"), style.shown_radius);
+  gl().Uniform1f(at("ends_at"), style.ends_at);
+  gl().Uniform1i(at("way_from_eye"), style.way_from_eye ? 1 : 0);
   gl().Uniform1i(at("noisy"), style.noisy ? 1 : 0);
   gl().Uniform1i(at("reads_depth"), style.reads_depth ? 1 : 0);
   set_cuts(gl(), style, program_);

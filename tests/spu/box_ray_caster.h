@@ -32,8 +32,12 @@ struct MarchStyle {
   bool parallel = false;      ///< the projection
   bool both_faces = false;    ///< neither front nor back faces of the box are culled
   bool face_by_face = false;  ///< each face of the box is a draw
-  bool whole_rays = false;    ///< rays begin at the nearest face, whichever face makes the fragment
-  bool lit = false;           ///< brightness by the gradient
+  float ends_at = 0.999F;     ///< rays end where they are so opaque
+  bool way_from_eye = false;  ///< what the vertex shader hands on is the way from the eye to the box's surface
+  /// The vertex shader's output has another name than the input that reads it, at one location.
+  bool matched_by_location = false;
+  bool whole_rays = false;  ///< rays begin at the nearest face, whichever face makes the fragment
+  bool lit = false;         ///< brightness by the gradient
   /// Diffuse and specular light that shines from the eye, on central differences over 2 `tap`.
   bool lit_from_eye = false;
   float ambient = 0.3F;

@@ -74,6 +74,10 @@ std::vector<Kind> kinds() {
         .discards = false,
         .both_faces = true,
         .extent = of_cubes}},
+      {"rays that end at an opacity of 0.95", {.ends_at = 0.95F, .extent = of_cubes}},
+      {"rays that end at an opacity of 0.7", {.ends_at = 0.7F, .extent = stretched}},
+      {"the way from the eye alone", {.way_from_eye = true, .extent = of_cubes}},
+      {"matched by location", {.matched_by_location = true, .extent = of_cubes}},
       {"maximum, blending disabled",
        {.composition = Composition::maximum, .replaces = true, .discards = false, .extent = of_cubes}},
       {"maximum", {.composition = Composition::maximum, .extent = of_cubes}},
@@ -195,6 +199,16 @@ TEST(Proxies, BackFacesThatAreDrawnLaterAreSeen) {
   const auto bare = scene.frame(false, 20);
   EXPECT_TRUE(under == bare) << psnr(under, bare) << " dB";
   EXPECT_LT(psnr(bare, culled), 35) << "back faces change nothing: the test tests nothing";
+}
+
+TEST(Proxies, OpacitiesAtWhichRaysEndAreMeasured) {
+  for (const float limit : {0.95F, 0.8F, 0.6F}) {
+    RayCasterScene scene(MarchStyle{.ends_at = limit});
+    ASSERT_NE(scene.app, nullptr) << "no EGL context here";
+    // Nearly opaque samples, behind which much would be left to see.
+    scene.caster.set_table(*scene.app, 0.3F);
+    for (const double angle : {20.0, 65.0}) scene.expect_alike(angle, std::to_string(limit), 45);
+  }
 }
 
 TEST(Proxies, AnotherStepAndAnotherTableAreSeen) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <vector>
 
 #include "spu/volume/proxy/light_space.h"
 
@@ -22,6 +23,11 @@ volume::RaySteps steps_along_x() {
 
 const WayThroughBox along_x{{0, 0.5, 0.5}, {1, 0, 0}};
 
+/// Samples that are all alike.
+std::vector<double> of_opacity(double opacity) {
+  return std::vector<double>(sample_places(steps_along_x(), along_x.way).size(), opacity);
+}
+
 double shares(const std::vector<NormalShare>& normals) {
   return std::accumulate(normals.begin(), normals.end(), 0.0,
                          [](double sum, const NormalShare& normal) { return sum + normal.share; });
@@ -29,8 +35,8 @@ double shares(const std::vector<NormalShare>& normals) {
 
 TEST(RayNormals, AreOneWhereNoEndIsWithinReach) {
   const LightSpace space(volume::Light{}, along_x.way);
-  const auto normals =
-      ray_normals(along_x, steps_along_x(), 0.03, space, {{0, 1, 0}, {32, 32, 32}, {0.1, 0.1, 0.1}});
+  const auto normals = ray_normals(along_x, steps_along_x(), of_opacity(0.03), space,
+                                   {{0, 1, 0}, {32, 32, 32}, {0.1, 0.1, 0.1}});
   ASSERT_EQ(normals.size(), 1U);
   EXPECT_NEAR(*normals[0].cosine, 0, 1e-12);
   EXPECT_NEAR(normals[0].share, 1, 1e-12);
@@ -39,8 +45,8 @@ TEST(RayNormals, AreOneWhereNoEndIsWithinReach) {
 TEST(RayNormals, TurnNearTheEnds) {
   const LightSpace space(volume::Light{}, along_x.way);
   // Within a tenth of both ends the rise along x is seen less.
-  const auto normals =
-      ray_normals(along_x, steps_along_x(), 0.03, space, {{1, 1, 0}, {1000, 1000, 1000}, {0.1, 0.1, 0.1}});
+  const auto normals = ray_normals(along_x, steps_along_x(), of_opacity(0.03), space,
+                                   {{1, 1, 0}, {1000, 1000, 1000}, {0.1, 0.1, 0.1}});
   ASSERT_GT(normals.size(), 3U);
   EXPECT_NEAR(shares(normals), 1, 1e-12);
   EXPECT_NEAR(*normals.front().cosine, 0.5 / std::hypot(0.5, 1), 0.01);
@@ -53,7 +59,7 @@ TEST(RayNormals, AreNoneWhereNothingRises) {
   const LightSpace space(volume::Light{}, along_x.way);
   // The first sample and its neighbours lie in the half texel at the end.
   const auto normals =
-      ray_normals(along_x, steps_along_x(), 0.03, space, {{1, 0, 0}, {4, 4, 4}, {0.1, 0.1, 0.1}});
+      ray_normals(along_x, steps_along_x(), of_opacity(0.03), space, {{1, 0, 0}, {4, 4, 4}, {0.1, 0.1, 0.1}});
   EXPECT_FALSE(normals.front().cosine);
   EXPECT_TRUE(normals[1].cosine);
 }
@@ -61,11 +67,23 @@ TEST(RayNormals, AreNoneWhereNothingRises) {
 TEST(RayNormals, CountForAsMuchAsIsSeenOfTheirSamples) {
   const LightSpace space(volume::Light{}, along_x.way);
   const EvenRise field{{1, 1, 0}, {1000, 1000, 1000}, {0.1, 0.1, 0.1}};
-  const double thin = ray_normals(along_x, steps_along_x(), 0.001, space, field).front().share;
-  const double dense = ray_normals(along_x, steps_along_x(), 0.5, space, field).front().share;
+  const double thin = ray_normals(along_x, steps_along_x(), of_opacity(0.001), space, field).front().share;
+  const double dense = ray_normals(along_x, steps_along_x(), of_opacity(0.5), space, field).front().share;
   // Of n samples of opacity a, the first counts for a / (1 - (1 - a)^n).
   EXPECT_NEAR(thin, 1 / 21.0, 0.001);
   EXPECT_NEAR(dense, 0.5, 1e-6);
+}
+
+TEST(RayNormals, CountForLessBehindOpaqueSamples) {
+  const LightSpace space(volume::Light{}, along_x.way);
+  const EvenRise field{{1, 1, 0}, {1000, 1000, 1000}, {0.1, 0.1, 0.1}};
+  std::vector<double> opacities = of_opacity(0);
+  opacities[0] = 0.5;
+  opacities[10] = 1;
+  opacities[15] = 1;  // not seen
+  const auto normals = ray_normals(along_x, steps_along_x(), opacities, space, field);
+  EXPECT_NEAR(normals.front().share, 0.5, 1e-12);
+  EXPECT_NEAR(shares(normals), 1, 1e-12);
 }
 
 TEST(RayNormals, GiveAMeanOfWhatTheLightMakes) {

@@ -40,9 +40,11 @@ std::vector<LitValue> lit_values(SlopeProbe& slopes, const LitRay& ray, const vo
     return difference(tint, tint_of(base[i - 1])) <= step && difference(tint, tint_of(base[i + 1])) <= step;
   };
   std::vector<LitValue> lit;
-  const auto look_at = [&](const std::vector<Rgba>& shown, const auto& normals_of) {
+  const auto look_at = [&](const volume::Vec3& gradient, const std::vector<Rgba>& shown,
+                           const auto& normals_of) {
     for (std::size_t i = 1; i + 1 < values.size(); ++i) {
-      if (is_even(i) && reached(shown[i]) && shown[i][3] > least_opacity)
+      if (is_even(i) && slopes.allows_steep(ray, values[i], gradient) && reached(shown[i]) &&
+          shown[i][3] > least_opacity)
         lit.push_back({tint_of(shown[i]), tint_of(base[i]), normals_of(values[i])});
     }
   };
@@ -50,14 +52,14 @@ std::vector<LitValue> lit_values(SlopeProbe& slopes, const LitRay& ray, const vo
   for (const double side : {1.0, -1.0}) {
     volume::Vec3 gradient{};
     gradient[axis] = side;
-    look_at(slopes.over(ray, values, gradient, 1, slopes.fine_texels()), [&](float) {
+    look_at(gradient, slopes.over_steep(ray, values, gradient, slopes.fine_texels()), [&](float) {
       return std::vector<NormalShare>{{side * cosine, 1}};
     });
   }
   const volume::Vec3 facing = directions.gradient(0, 0);
   const EvenRise rise = slopes.rise(facing, light.reach);
-  look_at(slopes.over(ray, values, facing), [&](float value) {
-    return ray_normals(ray.way, steps, slopes.sample_opacity(value), directions, rise);
+  look_at(facing, slopes.over_steep(ray, values, facing), [&](float value) {
+    return ray_normals(ray.way, steps, slopes.opacities_over_steep(ray, value, facing), directions, rise);
   });
   return lit;
 }

@@ -16,9 +16,12 @@
 
 namespace understudy::spu {
 
-/// Texture coordinate = scale * input + offset, axis by axis.
+/// Texture coordinate = scale * (input + origin) + offset, axis by axis.
 struct CoordinateSpace {
   std::string input;
+  /// Another input, or a uniform, whose value is one in all of the draw. Where `input` is the way from the eye,
+  /// as in shaders that interpolate the ray's direction, this is the eye; empty: (0, 0, 0).
+  std::string origin{};
   volume::Vec3 scale{1, 1, 1};
   volume::Vec3 offset{};
   bool of_whole_box = false;  ///< so that the box that was drawn is the whole texture
@@ -55,7 +58,8 @@ bool draws_box(const GlContext& context, const Run& run, const ProgramStages& st
 
 /// The coordinates that may address the volume: inputs of the fragment stage over which the draw is a whole
 /// box, as they are, in texels, or with the box for the whole texture, which they are in the world or in the
-/// object's own space. The likelier ones first; those that differ by an offset alone stand side by side.
+/// object's own space, or such inputs plus the eye's position. The likelier ones first; those that differ by an
+/// offset alone stand side by side.
 std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured);
 
 /// The box of the draw in the texture space of `space`; null when it is no closed surface (the near plane has

@@ -18,8 +18,9 @@ using volume::Rgba;
 
 namespace {
 
-/// By so much of SlopeProbe's least rise: less than from entry to entry of the table.
-constexpr double flat = 0.1;
+/// Of SlopeProbe's least rises: about as much as from entry to entry of the table. Gentler slopes have shorter
+/// normals in programs that keep these from a division by zero (SlopeProbe::over_steep).
+constexpr double gentle = 1;
 
 /// Slopes across the face by which a ray enters, from one side.
 struct FacingColours {
@@ -48,7 +49,7 @@ FacingColours facing_colours(const MarchContext& measured, FieldProbe& probe, co
   for (const double side : {1.0, -1.0}) {
     volume::Vec3 gradient{};
     gradient[axis] = std::copysign(side, side * way->way[axis]);
-    FacingColours seen{slopes.over(ray, gradient, flat, slopes.fine_texels())};
+    FacingColours seen{slopes.over(ray, ray.values, gradient, gentle, slopes.fine_texels())};
     if (!march.light->response.empty()) seen.cosine = LightSpace(*march.light, way->way).cosine(gradient);
     if (facing.colours.empty() || seen.brightness() > facing.brightness()) facing = std::move(seen);
   }

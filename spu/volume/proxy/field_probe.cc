@@ -181,12 +181,12 @@ std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::span<con
   });
 }
 
-std::vector<volume::Rgba> FieldProbe::at_gradient(double x, double y, std::span<const float> values,
+std::vector<volume::Rgba> FieldProbe::at_gradient(double x, double y, std::span<const SlopedField> fields,
                                                   const EvenSlope& slope) {
   std::array<int, 3> size{};
   for (std::size_t axis = 0; axis < 3; ++axis) size[axis] = slope.gradient[axis] == 0 ? 1 : slope.texels[axis];
   const auto height = [&](std::size_t axis, int i) {
-    return slope.gradient[axis] * ((i + 0.5) / size[axis] - slope.middle[axis]);
+    return slope.gradient[axis] * ((i + 0.5) / size[axis] - slope.place[axis]);
   };
   std::vector<float> heights;
   for (int k = 0; k < size[2]; ++k) {
@@ -195,8 +195,10 @@ std::vector<volume::Rgba> FieldProbe::at_gradient(double x, double y, std::span<
     }
   }
   std::vector<float> texels(heights.size());
-  return drawn_at(x, y, values.size(), [&](std::size_t v) {
-    std::ranges::transform(heights, texels.begin(), [&](float h) { return values[v] + h; });
+  return drawn_at(x, y, fields.size(), [&](std::size_t f) {
+    const SlopedField& field = fields[f];
+    std::ranges::transform(heights, texels.begin(),
+                           [&](float height) { return field.value + field.steepness * height; });
     show(texels, size, GL_LINEAR);
   });
 }

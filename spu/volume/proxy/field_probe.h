@@ -50,14 +50,17 @@ class FieldProbe {
   /// The same over fields that rise by `rise` through the volume, in the middle of which they have the value.
   std::vector<volume::Rgba> at_slope(double x, double y, std::span<const float> values, float rise);
 
-  /// The same over fields that rise evenly, and have the value at `middle`; half a texel from the faces they
-  /// are even. Backgrounds stay.
+  /// The same over fields that rise evenly; half a texel from the faces they are even. Backgrounds stay.
   struct EvenSlope {
     volume::Vec3 gradient{};
-    volume::Vec3 middle{};
+    volume::Vec3 place{};                ///< where the field has its value
     std::array<int, 3> texels{2, 2, 2};  ///< along an axis on which it does not rise there is one
   };
-  std::vector<volume::Rgba> at_gradient(double x, double y, std::span<const float> values,
+  struct SlopedField {
+    float value = 0;      ///< at the slope's place
+    float steepness = 1;  ///< times the slope's gradient
+  };
+  std::vector<volume::Rgba> at_gradient(double x, double y, std::span<const SlopedField> fields,
                                         const EvenSlope& slope);
 
   /// The same over fields that take two values in turn along the texture coordinate `axis`.

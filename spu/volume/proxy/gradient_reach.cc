@@ -52,9 +52,9 @@ std::optional<std::array<double, 3>> gradient_reach(SlopeProbe& slopes, const Li
   for (std::size_t axis = 0; axis < 3; ++axis) {
     seen[axis] = reach_along(slopes, ray, light, axis);
     if (!seen[axis]) continue;
-    // Whole texels, but for what counting samples leaves open.
-    const double whole = std::round(*seen[axis]);
-    if (whole >= 1 && std::abs(*seen[axis] - whole) < 0.1) seen[axis] = whole;
+    // Whole texels or halves, but for what counting samples leaves open.
+    const double halves = std::round(2 * *seen[axis]) / 2;
+    if (halves >= 1 && std::abs(*seen[axis] - halves) < 0.1) seen[axis] = halves;
     known.push_back(*seen[axis]);
   }
   std::array<double, 3> reach{};

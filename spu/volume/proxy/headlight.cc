@@ -43,7 +43,7 @@ struct SeenSlope {
 std::optional<SeenSlope> seen_slope(SlopeProbe& slopes, const LitRay& ray, const LightSpace& directions,
                                     double angle, double turn, int texels = slope_texels) {
   const volume::Vec3 gradient = directions.gradient(angle, turn);
-  const std::vector<Rgba> shown = slopes.over(ray, gradient, 1, texels);
+  const std::vector<Rgba> shown = slopes.over_steep(ray, ray.values, gradient, texels);
   for (std::size_t v = 0; v < shown.size(); ++v) {
     if (!reached(shown[v]) || !(std::abs(shown[v][3] - ray.base[v][3]) < another_opacity) || !(shown[v][3] > 0))
       return std::nullopt;
@@ -58,7 +58,8 @@ std::vector<Tint> expected_tints(const SlopeProbe& slopes, const LitRay& ray, co
   const EvenRise rise = slopes.rise(seen.gradient, light.reach, texels);
   std::vector<Tint> tints;
   for (std::size_t v = 0; v < ray.values.size(); ++v) {
-    const auto normals = ray_normals(ray.way, steps, slopes.sample_opacity(ray.values[v]), directions, rise);
+    const auto opacities = slopes.opacities_over_steep(ray, ray.values[v], seen.gradient, texels);
+    const auto normals = ray_normals(ray.way, steps, opacities, directions, rise);
     tints.push_back(lit_tint(light, normals, tint_of(ray.base[v])));
   }
   return tints;
@@ -252,6 +253,32 @@ bool shows_light(SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& 
   });
 }
 
+/// Whether a short ray shows the light as bright as it was measured on a long one. Of its samples more lie
+/// close to the faces, where normals are less sure: a highlight is another one there by what an angle makes of
+/// it.
+bool shows_light_as_bright(SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& steps,
+                           const volume::Light& light, std::span<const LookedAt> looked_at) {
+  constexpr double same = 0.02;
+  constexpr double angle_unsure = 0.03;
+  const LightSpace directions(light, ray.way.way);
+  const auto expected = [&](const LookedAt& slope, double aside) {
+    return expected_tints(slopes, ray, steps, light, {directions.gradient(slope.angle + aside, slope.turn)});
+  };
+  return std::ranges::all_of(looked_at, [&](const LookedAt& slope) {
+    const auto seen = seen_slope(slopes, ray, directions, slope.angle, slope.turn);
+    if (!seen) return false;
+    const std::array all{expected(slope, 0), expected(slope, -angle_unsure), expected(slope, angle_unsure)};
+    const double allowed = same * std::max(1.0, brightest(seen->tints));
+    for (std::size_t v = 0; v < seen->tints.size(); ++v) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto [least, most] = std::minmax({all[0][v][c], all[1][v][c], all[2][v][c]});
+        if (seen->tints[v][c] < least - allowed || seen->tints[v][c] > most + allowed) return false;
+      }
+    }
+    return true;
+  });
+}
+
 /// Of one ray, whatever the others show, going by slopes at angles from 0 to pi. What samples at the
 /// texture's ends add to it is taken away as the light so far says; without reach it stays.
 std::variant<volume::Light, Refusal> light_on(const SlopeProbe& slopes, const LitRay& ray,
@@ -337,10 +364,10 @@ std::optional<LitRay> ray_of_half_seen_value(SlopeProbe& slopes, const RaysThrou
   return ray;
 }
 
-/// Long rays on which values are translucent.
-std::vector<LitRay> lit_rays(SlopeProbe& slopes, const RaysThroughBox& rays, const volume::RaySteps& steps) {
+/// Those of `rays` on which values are translucent, with these.
+std::vector<LitRay> lit_rays(SlopeProbe& slopes, std::vector<LitRay> rays) {
   std::vector<LitRay> seen;
-  for (LitRay& ray : long_rays(rays, steps)) {
+  for (LitRay& ray : rays) {
     LitRay with = slopes.with_values(std::move(ray));
     if (!with.values.empty()) seen.push_back(std::move(with));
   }
@@ -358,18 +385,19 @@ std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchC
   light.ambient = {0, 0, 0};
   light.diffuse = light.specular = {1, 1, 1};
   SlopeProbe slopes(measured, probe, march);
-  std::vector<LitRay> seen = lit_rays(slopes, rays, march.steps);
+  std::vector<LitRay> seen = lit_rays(slopes, long_rays(rays, march.steps));
   if (seen.empty()) return Refusal{"no value is translucent on a long ray: light cannot be measured"};
   const auto is_black = [](const Rgba& colour) { return !(brightest_channel(colour) > darkest); };
   if (std::ranges::all_of(march.table.entries, is_black)) {
     light.even = {0, 0, 0};
     march.light = light;
     take_facing_colours(measured, probe, box, march);
-    seen = lit_rays(slopes, rays, march.steps);
+    seen = lit_rays(slopes, long_rays(rays, march.steps));
   }
   if (seen.empty() || std::ranges::all_of(seen.front().base, is_black))
     return Refusal{"neither even fields nor slopes have a colour under the light"};
   const LitRay& ray = seen.front();
+  march.slope_steepness = slopes.allowed_steepness(ray);
   const std::vector<LightInSpace> likely =
       in_likely_spaces(slopes, ray, light, candidate_spaces(measured, march));
   if (likely.empty()) return not_from_the_eye;
@@ -385,6 +413,11 @@ std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchC
   for (const LitRay& other : std::span(seen).subspan(1)) {
     if (!shows_light(slopes, other, march.steps, light, looked_at, slope_texels))
       return Refusal{"the light does not shine along every ray"};
+  }
+  for (const LitRay& other :
+       lit_rays(slopes, near_and_far_rays(rays, march.steps, box.camera.texture_to_clip))) {
+    if (!shows_light_as_bright(slopes, other, march.steps, light, looked_at))
+      return Refusal{"the light is not as bright at the back of the box as at its front"};
   }
   auto lights = without_and_with_clamp(slopes, ray, march.steps, axis, light, measured.range);
   if (lights.empty()) return another_colour;

@@ -13,6 +13,7 @@
 #include "spu/volume/proxy/headlight.h"
 #include "spu/volume/proxy/march_table.h"
 #include "spu/volume/proxy/mean_steps.h"
+#include "spu/volume/proxy/opacity_limit.h"
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/ray_probes.h"
 #include "spu/volume/proxy/sample_places.h"
@@ -80,8 +81,12 @@ class MarchMeasurement {
   void take_rules(const std::vector<StepFit>& fits);
   std::optional<Refusal> take_offsets();
   std::optional<Refusal> find_places();
-  /// Of the rules, counted from where rays enter or leave the box, that which explains most rays.
-  double least_misplaced(bool from_exit);
+  /// The part of rays whose samples are not where a rule puts them, counted from where rays enter or leave the
+  /// box; null where it cannot be counted so.
+  std::optional<double> misplaced(const volume::RaySteps& rule, bool from_exit) const;
+  /// By the rule that explains most rays.
+  double least_misplaced(bool from_exit) const;
+  const volume::RaySteps& likeliest_rule() const;
   void add_lit_marches(March march, std::vector<March>& marches) const;
   void add_marches(const CoordinateSpace& space, const volume::RaySteps& rule, bool seen,
                    std::vector<March>& marches) const;
@@ -243,6 +248,8 @@ std::optional<Refusal> MarchMeasurement::measure_samples() {
   if (auto refusal = measure_table(measured_, probe_, rays_, rules_.front(), march_)) return refusal;
   if (!fill_unseen(probe_, box_, rules_.front(), march_))
     return "a value that may hide what lies behind it has the colour of the shader's background";
+  if (!march_.shows_one_colour() && !march_.sum && !march_.background)
+    march_.opacity_limit = opacity_limit(march_, rules_.front(), probe_, rays_);
   if (auto refusal = take_offsets()) return refusal;
   return find_places();
 }
@@ -250,21 +257,27 @@ std::optional<Refusal> MarchMeasurement::measure_samples() {
 std::optional<Refusal> MarchMeasurement::measure_light() {
   if (!lit_) return std::nullopt;
   if (!held_still(measured_, probe_, march_)) return "the noise at the rays' beginnings cannot be taken away";
-  march_.steps = rules_.front();
+  march_.steps = likeliest_rule();
   auto lights = measure_headlight(measured_, probe_, box_, march_);
   if (auto* refusal = std::get_if<Refusal>(&lights)) return std::move(*refusal);
   lights_ = std::get<std::vector<volume::Light>>(std::move(lights));
   return std::nullopt;
 }
 
-double MarchMeasurement::least_misplaced(bool from_exit) {
+std::optional<double> MarchMeasurement::misplaced(const volume::RaySteps& rule, bool from_exit) const {
+  if (from_exit && !may_be_counted_from_exit(rule)) return std::nullopt;
+  return misplaced_part(split_, rays_, from_exit ? counted_from_exit(rule, rays_, probe_) : rule);
+}
+
+double MarchMeasurement::least_misplaced(bool from_exit) const {
   double least = 1;
-  for (const volume::RaySteps& rule : rules_) {
-    if (from_exit && !may_be_counted_from_exit(rule)) continue;
-    const volume::RaySteps placed = from_exit ? counted_from_exit(rule, rays_, probe_) : rule;
-    least = std::min(least, misplaced_part(split_, rays_, placed));
-  }
+  for (const volume::RaySteps& rule : rules_) least = std::min(least, misplaced(rule, from_exit).value_or(1));
   return least;
+}
+
+const volume::RaySteps& MarchMeasurement::likeliest_rule() const {
+  return *std::ranges::min_element(
+      rules_, {}, [&](const volume::RaySteps& rule) { return misplaced(rule, march_.from_exit).value_or(1); });
 }
 
 std::optional<Refusal> MarchMeasurement::find_places() {
@@ -366,7 +379,7 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
   MarchFinding finding = samples_lie_elsewhere;
   for (auto first = spaces.begin(); first != spaces.end();) {
     const auto last = std::find_if(first, spaces.end(), [&](const CoordinateSpace& space) {
-      return space.scale != first->scale || space.input != first->input;
+      return space.scale != first->scale || space.input != first->input || space.origin != first->origin;
     });
     finding = measure_in(measured, {first, last});
     const auto* const refusal = std::get_if<Refusal>(&finding);

@@ -59,11 +59,16 @@ struct March {
   /// Of samples that are composed by over: the program writes colours that are multiplied by alpha, and
   /// blending multiplies them by it once more.
   bool alpha_twice = false;
+  /// Of samples that are composed by over: as of RenderRequest (opacity_limit.h).
+  float opacity_limit = 1;
   std::optional<Jitter> jitter;  ///< where `steps.offsets` come from
   /// Premultiplied; of one sample. Where there is light, in an even field, or, if `light->even` is 0, on slopes
   /// that face the eye.
   volume::TransferFunction table;
   std::optional<volume::Light> light;
+  /// Slopes by which `light` is measured and looked at again are at most so many times as steep as the gentlest
+  /// that tell (SlopeProbe::over_steep).
+  double slope_steepness = 16;
   /// Samples are rounded as some drivers do (classification/sample_rounding.h): gradients of few texel values
   /// are seen best.
   bool rounds_samples = false;

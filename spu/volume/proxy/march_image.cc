@@ -62,6 +62,7 @@ void ask_nodes(const March& march, volume::RenderRequest& request) {
     for (Rgba& entry : table.entries) entry[3] = march.mean ? 1 : entry[3];
     request.classification = std::move(table);
     request.light = march.light;
+    request.opacity_limit = march.opacity_limit;
     if (march.rounds_samples) round_samples(request);
   }
 }

@@ -27,27 +27,38 @@ Vec3 seen_gradient(const EvenRise& field, const Vec3& place) {
 
 }  // namespace
 
-std::vector<NormalShare> ray_normals(const WayThroughBox& way, const volume::RaySteps& steps, double opacity,
-                                     const LightSpace& space, const EvenRise& field) {
-  constexpr double same = 1e-6;
-  const double length = steps_of_way(steps, way.way);
+std::vector<double> sample_places(const volume::RaySteps& steps, const Vec3& way) {
+  const double length = steps_of_way(steps, way);
   const double samples = std::max(1.0, samples_of_length(steps, length));
-  const double between = 1 / (steps.divided ? samples : length);  // samples, in parts of the way
+  std::vector<double> places;
+  places.reserve(std::size_t(samples));
+  for (int i = 0; i < int(samples); ++i)
+    places.push_back((steps.first + i) / (steps.divided ? samples : length));
+  return places;
+}
+
+std::vector<NormalShare> ray_normals(const WayThroughBox& way, const volume::RaySteps& steps,
+                                     std::span<const double> opacities, const LightSpace& space,
+                                     const EvenRise& field) {
+  constexpr double same = 1e-6;
+  const std::vector<double> places = sample_places(steps, way.way);
   std::vector<NormalShare> normals;
   double through = 1;
   double sum = 0;
-  for (int i = 0; i < int(samples); ++i, through *= 1 - opacity) {
-    const Vec3 place = volume::add(way.entry, volume::scale(way.way, (steps.first + i) * between));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double seen = through * opacities[i];
+    through -= seen;
+    const Vec3 place = volume::add(way.entry, volume::scale(way.way, places[i]));
     const Vec3 gradient = seen_gradient(field, place);
-    NormalShare one{std::nullopt, through};
+    NormalShare one{std::nullopt, seen};
     if (volume::length(gradient) > 0) one.cosine = space.cosine(gradient);
     const bool as_before = !normals.empty() && one.cosine.has_value() == normals.back().cosine.has_value() &&
                            (!one.cosine || std::abs(*one.cosine - *normals.back().cosine) < same);
     if (as_before)
-      normals.back().share += through;
+      normals.back().share += seen;
     else
       normals.push_back(one);
-    sum += through;
+    sum += seen;
   }
   for (NormalShare& normal : normals) normal.share /= sum;
   return normals;

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "spu/volume/proxy/box.h"
@@ -31,9 +32,13 @@ struct EvenRise {
   volume::Vec3 reach{};         ///< to both sides of a sample, in texture space
 };
 
-/// `opacity` is that of one sample.
-std::vector<NormalShare> ray_normals(const WayThroughBox& way, const volume::RaySteps& steps, double opacity,
-                                     const LightSpace& space, const EvenRise& field);
+/// Places of a ray's samples, in parts of its way.
+std::vector<double> sample_places(const volume::RaySteps& steps, const volume::Vec3& way);
+
+/// `opacities` are those of the samples, from the eye on.
+std::vector<NormalShare> ray_normals(const WayThroughBox& way, const volume::RaySteps& steps,
+                                     std::span<const double> opacities, const LightSpace& space,
+                                     const EvenRise& field);
 
 /// What `light`, which has a response, makes of a colour where the gradient is at this cosine to the eye;
 /// clamped, if it clamps.

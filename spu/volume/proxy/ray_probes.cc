@@ -32,7 +32,8 @@ bool is_at_step(const MarchContext& measured, FieldProbe& probe, const Ray& ray,
 
 }  // namespace
 
-Ray ray_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, double wanted) {
+std::vector<Ray> rays_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, double wanted) {
+  constexpr int directions = 16;
   const auto length_at = [&](double x, double y) {
     const auto way = rays.way(x, y);
     return way ? steps_of_way(steps, *way) : 0.0;
@@ -40,9 +41,10 @@ Ray ray_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, dou
   const auto middle = rays.middle();
   const double mx = std::clamp(middle[0], -0.9, 0.9);
   const double my = std::clamp(middle[1], -0.9, 0.9);
-  Ray best{mx, my, length_at(mx, my)};
-  for (int direction = 0; direction < 16; ++direction) {
-    const double angle = M_PI / 8 * direction + 0.1;
+  std::vector<Ray> found(directions, Ray{mx, my, length_at(mx, my)});
+  for (int direction = 0; direction < directions; ++direction) {
+    Ray& best = found[std::size_t(direction)];
+    const double angle = 2 * M_PI / directions * direction + 0.1;
     double inside = 0;
     double outside = 3;
     for (int halving = 0; halving < 24; ++halving) {
@@ -55,7 +57,12 @@ Ray ray_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, dou
       (length > wanted ? inside : outside) = reach;
     }
   }
-  return best;
+  return found;
+}
+
+Ray ray_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, double wanted) {
+  return std::ranges::min(rays_of_length(rays, steps, wanted), {},
+                          [&](const Ray& ray) { return std::abs(ray.length - wanted); });
 }
 
 bool depends_on_gradient(const MarchContext& measured, FieldProbe& probe, const Ray& ray, float value) {

@@ -24,6 +24,9 @@ struct Ray {
 /// outwards.
 Ray ray_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, double wanted);
 
+/// The same in each of 16 directions from the middle of the box; lengths may be others where none comes close.
+std::vector<Ray> rays_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, double wanted);
+
 /// Whether the colour of a ray changes when the field of `value` gets the slightest slope, as lighting would.
 bool depends_on_gradient(const MarchContext& measured, FieldProbe& probe, const Ray& ray, float value);
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "spu/volume/classification/table_lookup.h"
@@ -23,6 +25,9 @@ namespace {
 /// table.
 constexpr float least_share = 0.003F;
 
+/// Slopes are tried so many times as steep.
+constexpr std::array<double, 2> steepnesses{16, 4};
+
 constexpr float least_seen = 0.08F;
 constexpr float most_seen = 0.92F;
 
@@ -30,6 +35,27 @@ std::optional<LitRay> ray_at(const RaysThroughBox& rays, double x, double y) {
   const auto way = rays.through(x, y);
   if (!way) return std::nullopt;
   return LitRay{x, y, *way, {}, {}};
+}
+
+/// The gradient over which the values on a ray differ most; its largest component is 1.
+Vec3 rising_most(const Vec3& way) {
+  double longest = 0;
+  for (const double along : way) longest = std::max(longest, std::abs(along));
+  return volume::scale(way, 1 / longest);
+}
+
+/// The mean of a ray's samples' places, each weighted by what is seen of it.
+double mean_place_seen(std::span<const double> places, std::span<const double> opacities) {
+  double through = 1;
+  double sum = 0;
+  double moment = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double seen = through * opacities[i];
+    through -= seen;
+    sum += seen;
+    moment += seen * places[i];
+  }
+  return sum > 0 ? moment / sum : 0;
 }
 
 }  // namespace
@@ -106,11 +132,71 @@ std::vector<Rgba> SlopeProbe::base(double x, double y, const std::vector<float>&
 }
 
 std::vector<Rgba> SlopeProbe::over(const LitRay& ray, const std::vector<float>& values, const Vec3& gradient,
-                                   double steepness, int texels) {
-  const Vec3 middle = volume::add(ray.way.entry, volume::scale(ray.way.way, 0.5));
+                                   const std::function<double(float)>& steepness_for, int texels) {
   const std::array<int, 3> size = field_size(texels);
-  return premultiplied_all(
-      probe_.at_gradient(ray.x, ray.y, values, {risen(gradient, steepness, size), middle, size}));
+  const Vec3 slope = risen(gradient, 1, size);
+  const double rise_of_way = volume::dot(slope, ray.way.way);
+  std::vector<FieldProbe::SlopedField> fields;
+  fields.reserve(values.size());
+  for (const float value : values) {
+    const double steepness = steepness_for(value);
+    const double at_entry = samples_over_rise(ray, value, steepness * rise_of_way).value_at_entry;
+    fields.push_back({float(at_entry), float(steepness)});
+  }
+  return premultiplied_all(probe_.at_gradient(ray.x, ray.y, fields, {slope, ray.way.entry, size}));
+}
+
+SlopeProbe::SamplesOverRise SlopeProbe::samples_over_rise(const LitRay& ray, float value,
+                                                          double rise_of_way) const {
+  constexpr int corrections = 3;  // what is seen depends on the values, which depend on what is seen
+  const std::vector<double> places = sample_places(march_.steps, ray.way.way);
+  SamplesOverRise samples{double(value), std::vector<double>(places.size(), sample_opacity(value))};
+  for (int i = 0; i < corrections; ++i) {
+    samples.value_at_entry = double(value) - rise_of_way * mean_place_seen(places, samples.opacities);
+    for (std::size_t k = 0; k < places.size(); ++k)
+      samples.opacities[k] = sample_opacity(float(samples.value_at_entry + rise_of_way * places[k]));
+  }
+  return samples;
+}
+
+std::vector<double> SlopeProbe::opacities_over_steep(const LitRay& ray, float value, const Vec3& gradient,
+                                                     int texels) const {
+  const double rise_of_way = volume::dot(risen(gradient, 1, field_size(texels)), ray.way.way);
+  return samples_over_rise(ray, value, allowed_steepness(ray, value, gradient) * rise_of_way).opacities;
+}
+
+double SlopeProbe::allowed_steepness(const LitRay& ray, float value, const Vec3& gradient) const {
+  // Where colours change evenly around the value, what lies before it and what lies behind it make up for each
+  // other, but for what opacity hides.
+  constexpr double bent = 0.015;      // of the brightest channel
+  constexpr double same_tint = 0.15;  // likewise
+  constexpr float same_opacity = 0.15F;
+  const float entry = (range_[1] - range_[0]) / float(march_.table.entries.size());
+  const Rgba at_value = table_at(march_.table, value);
+  const Tint tint = tint_of(at_value);
+  const double bright = brightest({tint});
+  const auto is_even = [&](float away) {
+    const std::array around{table_at(march_.table, value - away), table_at(march_.table, value + away)};
+    if (value - away < range_[0] || value + away > range_[1]) return false;
+    for (const Rgba& colour : around) {
+      if (std::abs(colour[3] - at_value[3]) > same_opacity * at_value[3] ||
+          difference(tint_of(colour), tint) > same_tint * bright)
+        return false;
+    }
+    const Tint before = tint_of(around[0]);
+    const Tint behind = tint_of(around[1]);
+    return difference(tint, {(before[0] + behind[0]) / 2, (before[1] + behind[1]) / 2,
+                             (before[2] + behind[2]) / 2}) <= bent * bright;
+  };
+  for (const double steepness : steepnesses) {
+    if (steepness > march_.slope_steepness) continue;
+    const float rise = rise_along(ray, gradient, steepness);
+    const int entries = 1 + int(rise / entry);
+    bool even = true;
+    for (int i = 1; i <= entries && even; ++i) even = is_even(rise * float(i) / float(entries));
+    if (even) return steepness;
+  }
+  return 1;
 }
 
 Vec3 SlopeProbe::risen(const Vec3& gradient, double steepness, const std::array<int, 3>& size) const {
@@ -135,6 +221,13 @@ double SlopeProbe::sample_opacity(float value) const {
 
 double SlopeProbe::reach_in_stripes(std::size_t axis, double part) const {
   return part * (counts_texels() ? FieldProbe::field_texels : size_[axis]);
+}
+
+double SlopeProbe::allowed_steepness(const LitRay& ray) const {
+  double least = march_.slope_steepness;
+  for (const float value : ray.values)
+    least = std::min(least, allowed_steepness(ray, value, rising_most(ray.way.way)));
+  return least;
 }
 
 float SlopeProbe::rise_along(const LitRay& ray, const Vec3& gradient, double steepness) const {
@@ -192,6 +285,34 @@ LitRay SlopeProbe::with_values(LitRay ray) {
   const auto is_moderate = [&](std::size_t i) { return brightness(i) > dark && brightness(i) < bright; };
   if (std::ranges::any_of(candidates, is_moderate))
     std::erase_if(candidates, [&](std::size_t i) { return !is_moderate(i); });
+  const Vec3 facing = rising_most(ray.way.way);
+  // Where opacity has a step beside the value, a slope shows another one than an even field.
+  const float farthest = 1.5F * rise_along(ray, facing, 1);
+  const auto keeps_opacity = [&](std::size_t i) {
+    constexpr double same_opacity = 0.3;
+    const double here = sample_opacity(values[i]);
+    return std::abs(sample_opacity(values[i] - farthest) - here) <= same_opacity * here &&
+           std::abs(sample_opacity(values[i] + farthest) - here) <= same_opacity * here;
+  };
+  if (std::ranges::any_of(candidates, keeps_opacity))
+    std::erase_if(candidates, [&](std::size_t i) { return !keeps_opacity(i); });
+  const auto spread = [&](const std::vector<std::size_t>& some) {
+    double most_apart = 0;
+    for (const std::size_t i : some) {
+      for (const std::size_t j : some)
+        most_apart = std::max(most_apart, difference(tint_of(shown[3 * i + 1]), tint_of(shown[3 * j + 1])));
+    }
+    return most_apart;
+  };
+  for (const double steepness : steepnesses) {
+    constexpr double enough = 0.5;
+    std::vector<std::size_t> steep;
+    std::ranges::copy_if(candidates, std::back_inserter(steep),
+                         [&](std::size_t i) { return allowed_steepness(ray, values[i], facing) >= steepness; });
+    if (steep.size() < most || spread(steep) < enough * spread(candidates)) continue;
+    candidates = std::move(steep);
+    break;
+  }
   while (!candidates.empty() && ray.values.size() < most) {
     const std::vector<Tint> chosen = tints_of(ray.base);
     // The first is the brightest; then the one that is farthest from all others.
@@ -221,6 +342,27 @@ std::vector<LitRay> long_rays(const RaysThroughBox& rays, const volume::RaySteps
     if (const auto ray = ray_at(rays, other.x, other.y)) found.push_back(*ray);
   }
   return found;
+}
+
+std::vector<LitRay> near_and_far_rays(const RaysThroughBox& rays, const volume::RaySteps& steps,
+                                      const volume::Matrix4& texture_to_clip) {
+  constexpr double part = 0.25;
+  const auto middle = rays.middle();
+  const auto through_middle = rays.way(middle[0], middle[1]);
+  if (!through_middle) return {};
+  const double wanted = part * steps_of_way(steps, *through_middle);
+  const auto depth = [&](const LitRay& ray) {
+    const volume::Vec3 halfway = volume::add(ray.way.entry, volume::scale(ray.way.way, 0.5));
+    return volume::transform_point(texture_to_clip, halfway)[3];
+  };
+  std::vector<LitRay> found;
+  for (const Ray& ray : rays_of_length(rays, steps, wanted)) {
+    if (std::abs(ray.length - wanted) > 0.2 * wanted) continue;
+    if (auto seen = ray_at(rays, ray.x, ray.y)) found.push_back(*std::move(seen));
+  }
+  if (found.size() < 2) return found;
+  const auto [nearest, farthest] = std::ranges::minmax_element(found, {}, depth);
+  return {*nearest, *farthest};
 }
 
 }  // namespace understudy::spu

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -45,14 +46,29 @@ class SlopeProbe {
   std::vector<volume::Rgba> base(double x, double y, const std::vector<float>& values);
 
   /// Over fields that rise, as the program's gradients see them, by `gradient` times `steepness` times the
-  /// least rise that tells, per unit of texture space; in the middle of the ray they have the value.
+  /// least rise that tells, per unit of texture space. Their values are met where a ray is seen, on average
+  /// over its samples.
   std::vector<volume::Rgba> over(const LitRay& ray, const std::vector<float>& values,
-                                 const volume::Vec3& gradient, double steepness = 1, int texels = slope_texels);
-  /// Of the ray's own values.
-  std::vector<volume::Rgba> over(const LitRay& ray, const volume::Vec3& gradient, double steepness = 1,
-                                 int texels = slope_texels) {
-    return over(ray, ray.values, gradient, steepness, texels);
+                                 const volume::Vec3& gradient, double steepness, int texels = slope_texels) {
+    return over(
+        ray, values, gradient, [=](float) { return steepness; }, texels);
   }
+  /// The same as steep as each value's colours allow, and the march: a program that keeps its normals from a
+  /// division by zero, as by slope / (length(slope) + 1e-6), makes them shorter the gentler the slope is.
+  std::vector<volume::Rgba> over_steep(const LitRay& ray, const std::vector<float>& values,
+                                       const volume::Vec3& gradient, int texels = slope_texels) {
+    return over(
+        ray, values, gradient, [&](float value) { return allowed_steepness(ray, value, gradient); }, texels);
+  }
+  /// Opacities of the ray's samples over that field, from the eye on.
+  std::vector<double> opacities_over_steep(const LitRay& ray, float value, const volume::Vec3& gradient,
+                                           int texels = slope_texels) const;
+  /// Whether a value's colours allow as steep slopes as the march does.
+  bool allows_steep(const LitRay& ray, float value, const volume::Vec3& gradient) const {
+    return allowed_steepness(ray, value, gradient) >= march_.slope_steepness;
+  }
+  /// As steep as all values of the ray allow, at any angle.
+  double allowed_steepness(const LitRay& ray) const;
   /// Of one sample of a value, by the march's table.
   double sample_opacity(float value) const;
   /// The same fields as ray_normals.h has them; `reach` in texels of the volume, as volume::Light has it.
@@ -63,7 +79,7 @@ class SlopeProbe {
   /// a face, has the others' normal.
   int fine_texels() const { return counts_texels() ? 2 * slope_texels : probe_.finest_texels(); }
 
-  /// By how much the values on a ray differ at most from that in its middle, over the fields of over().
+  /// By how much the values on a ray differ from that of the field, over the fields of over().
   float rise_along(const LitRay& ray, const volume::Vec3& gradient, double steepness) const;
 
   /// How many of the volume's texels along an axis a part of texture space is that gradients reach over in a
@@ -73,14 +89,25 @@ class SlopeProbe {
   /// begin anywhere.
   Tint over_stripes(const LitRay& ray, std::size_t axis, int width);
 
-  /// The ray with up to three values that it shows translucent, at no step of the table, and in colours that
-  /// differ as much as they can.
+  /// The ray with up to three values that it shows translucent, at no step of the table, in colours that differ
+  /// as much as they can, and that allow steep slopes if such values have colours that differ enough.
   LitRay with_values(LitRay ray);
 
  private:
   std::vector<volume::Rgba> premultiplied_all(std::vector<volume::Rgba> fragments) const;
   /// Of all over the range of values.
   float least_rise() const;
+  std::vector<volume::Rgba> over(const LitRay& ray, const std::vector<float>& values,
+                                 const volume::Vec3& gradient,
+                                 const std::function<double(float)>& steepness_for, int texels);
+  struct SamplesOverRise {
+    double value_at_entry = 0;
+    std::vector<double> opacities;
+  };
+  /// Of a field that rises by so much along the ray, and is met as over() says.
+  SamplesOverRise samples_over_rise(const LitRay& ray, float value, double rise_of_way) const;
+  /// By the march's table.
+  double allowed_steepness(const LitRay& ray, float value, const volume::Vec3& gradient) const;
   bool counts_texels() const { return neighbours_ == program::NeighbourDistance::in_texels; }
   std::array<int, 3> field_size(int texels) const;
   /// What a field of this size rises by, so that the program's gradients see this.
@@ -99,5 +126,10 @@ bool is_translucent(const volume::Rgba& colour);
 
 /// Rays that go far through the box: the longest, and others a little away from the middle of the view.
 std::vector<LitRay> long_rays(const RaysThroughBox& rays, const volume::RaySteps& steps);
+
+/// Of the rays a quarter as long as the one through the middle of the view, that which is nearest to the eye
+/// and that which is farthest from it. A long ray shows mostly what is near.
+std::vector<LitRay> near_and_far_rays(const RaysThroughBox& rays, const volume::RaySteps& steps,
+                                      const volume::Matrix4& texture_to_clip);
 
 }  // namespace understudy::spu

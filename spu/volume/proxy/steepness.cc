@@ -66,7 +66,7 @@ bool is_the_same_for_any_steepness(SlopeProbe& slopes, const LitRay& ray, const 
                                  Slope{beside(ray.way.way, axis_of_entry), {1, 100, 400}}}) {
     std::vector<Tint> first;
     for (const double steepness : looked_at.steepness) {
-      const std::vector<Rgba> shown = slopes.over(ray, looked_at.gradient, steepness);
+      const std::vector<Rgba> shown = slopes.over(ray, ray.values, looked_at.gradient, steepness);
       const std::vector<BaseNearby> base =
           base_nearby(slopes, ray, slopes.rise_along(ray, looked_at.gradient, steepness));
       const std::vector<Tint> tints = tints_of(shown);

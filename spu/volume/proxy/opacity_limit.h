@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Early ray termination of the application's own: at which opacity its program leaves a ray, where what it
+// leaves out would be seen.
+#pragma once
+
+#include "spu/volume/proxy/box.h"
+#include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/march.h"
+
+namespace understudy::spu {
+
+/// Of a march whose samples are composed by over, with its table and `steps`: the opacity behind which no
+/// sample is added; 1 where there is none, or none below 0.97. Beyond that, what a ray leaves out is less than
+/// a comparison of images allows, and rays may be cast in parts.
+float opacity_limit(const March& march, const volume::RaySteps& steps, FieldProbe& probe,
+                    const RaysThroughBox& rays);
+
+}  // namespace understudy::spu

@@ -74,7 +74,7 @@ bool begins_at_eye(const volume::Matrix4& input_to_clip, const volume::Box& box)
 std::optional<volume::Vec3> constant_input(const MarchContext& measured, const Capture& capture,
                                            std::size_t input) {
   const StageInput& described = measured.stages.inputs[input];
-  if (described.integer || !described.written || described.components != 3) return std::nullopt;
+  if (described.integer || !described.written || described.components < 3) return std::nullopt;
   volume::Vec3 value{};
   for (std::size_t k = 0; k < 3; ++k) {
     const float first = capture.value(0, input, k);
@@ -91,7 +91,7 @@ std::optional<volume::Vec3> uniform_vector(const MarchContext& measured, const s
   const GLuint program = measured.run.pipeline().program;
   const GLint location = gl.GetUniformLocation(program, name.c_str());
   if (location < 0) return std::nullopt;
-  std::array<float, 4> value{};  // the fourth, if there is one, is that of a homogeneous place
+  std::array<float, 4> value{};
   gl.GetUniformfv(program, location, value.data());
   return volume::Vec3{double(value[0]), double(value[1]), double(value[2])};
 }
@@ -106,14 +106,19 @@ std::optional<volume::Vec3> origin_of(const MarchContext& measured, const Captur
   return uniform_vector(measured, name);
 }
 
+/// Whether there is a place in it; the fourth of four numbers is that of a homogeneous one, or something else.
+bool is_vector(GLenum type) {
+  return type == GL_FLOAT_VEC3 || type == GL_FLOAT_VEC4;
+}
+
 /// Names of vectors that may be the eye's position.
 std::vector<std::string> possible_origins(const ProgramStages& stages, const std::string& input) {
   std::vector<std::string> names;
   for (const StageInput& other : stages.inputs) {
-    if (other.type == GL_FLOAT_VEC3 && other.name != input) names.push_back(other.name);
+    if (is_vector(other.type) && other.name != input) names.push_back(other.name);
   }
   for (const StageUniform& uniform : stages.uniforms) {
-    if (uniform.type == GL_FLOAT_VEC3 || uniform.type == GL_FLOAT_VEC4) names.push_back(uniform.name);
+    if (is_vector(uniform.type)) names.push_back(uniform.name);
   }
   return names;
 }

@@ -284,7 +284,9 @@ bool shows_light_as_bright(SlopeProbe& slopes, const LitRay& ray, const volume::
 std::variant<volume::Light, Refusal> light_on(const SlopeProbe& slopes, const LitRay& ray,
                                               const volume::RaySteps& steps, const std::vector<SeenSlope>& seen,
                                               volume::Light light) {
+  constexpr float same_before_correction = 0.1F;
   constexpr float same = 0.03F;
+  const double allowed = double(light.response.empty() ? same_before_correction : same);
   const std::vector<Tint> base = tints_of(ray.base);
   std::vector<volume::LightResponse> by_angle;
   for (const SeenSlope& slope : seen) {
@@ -297,7 +299,7 @@ std::variant<volume::Light, Refusal> light_on(const SlopeProbe& slopes, const Li
       }
     }
     const ResponseFit fit = response_fit(base, inside);
-    if (!(fit.worst <= same * std::max(1.0, brightest(inside)))) return another_colour;
+    if (!(fit.worst <= allowed * std::max(1.0, brightest(inside)))) return another_colour;
     by_angle.push_back(fit.response);
   }
   // Light that is hardly seen may be one that wakes on steeper slopes, and a neighbour's value that colours

@@ -20,9 +20,9 @@ namespace {
 struct Additive {
   bool sum = false;
   std::size_t channel = 3;
+  float most_told = 0.99F;  ///< beyond, programs stop
 
   std::optional<double> of(const Rgba& ray) const {
-    constexpr float most_told = 0.99F;  // beyond, programs stop
     if (!reached(ray) || !(ray[channel] >= 0 && ray[channel] <= most_told)) return std::nullopt;
     return sum ? double(ray[channel]) : -std::log1p(-double(ray[channel]));
   }
@@ -47,10 +47,12 @@ bool told_apart(const ShaderBackground& background, const Rgba& a, const Rgba& b
 std::optional<Contrast> contrast_to(const Rgba& translucent, const March& march,
                                     const std::vector<SeenValue>& values) {
   constexpr double least_told = 0.25;  // of what the translucent one adds
+  constexpr float below_limit = 1e-4F;
   std::optional<Contrast> best;
   double most = 0;
   for (std::size_t channel = march.sum ? 0 : 3; channel < (march.sum ? 3U : 4U); ++channel) {
-    const Additive amount{march.sum.has_value(), channel};
+    Additive amount{march.sum.has_value(), channel};
+    if (!march.sum) amount.most_told = std::min(amount.most_told, march.opacity_limit - below_limit);
     const auto own = amount.of(translucent);
     if (!own) continue;
     for (const SeenValue& seen : values) {

@@ -37,11 +37,9 @@ std::optional<LitRay> ray_at(const RaysThroughBox& rays, double x, double y) {
   return LitRay{x, y, *way, {}, {}};
 }
 
-/// The gradient over which the values on a ray differ most; its largest component is 1.
+/// Of gradients whose largest component is 1, that over which the values on a ray differ most.
 Vec3 rising_most(const Vec3& way) {
-  double longest = 0;
-  for (const double along : way) longest = std::max(longest, std::abs(along));
-  return volume::scale(way, 1 / longest);
+  return {std::copysign(1.0, way[0]), std::copysign(1.0, way[1]), std::copysign(1.0, way[2])};
 }
 
 /// The mean of a ray's samples' places, each weighted by what is seen of it.
@@ -285,9 +283,9 @@ LitRay SlopeProbe::with_values(LitRay ray) {
   const auto is_moderate = [&](std::size_t i) { return brightness(i) > dark && brightness(i) < bright; };
   if (std::ranges::any_of(candidates, is_moderate))
     std::erase_if(candidates, [&](std::size_t i) { return !is_moderate(i); });
-  const Vec3 facing = rising_most(ray.way.way);
+  const Vec3 steepest = rising_most(ray.way.way);
   // Where opacity has a step beside the value, a slope shows another one than an even field.
-  const float farthest = 1.5F * rise_along(ray, facing, 1);
+  const float farthest = 1.5F * rise_along(ray, steepest, 1);
   const auto keeps_opacity = [&](std::size_t i) {
     constexpr double same_opacity = 0.3;
     const double here = sample_opacity(values[i]);
@@ -307,8 +305,9 @@ LitRay SlopeProbe::with_values(LitRay ray) {
   for (const double steepness : steepnesses) {
     constexpr double enough = 0.5;
     std::vector<std::size_t> steep;
-    std::ranges::copy_if(candidates, std::back_inserter(steep),
-                         [&](std::size_t i) { return allowed_steepness(ray, values[i], facing) >= steepness; });
+    std::ranges::copy_if(candidates, std::back_inserter(steep), [&](std::size_t i) {
+      return allowed_steepness(ray, values[i], steepest) >= steepness;
+    });
     if (steep.size() < most || spread(steep) < enough * spread(candidates)) continue;
     candidates = std::move(steep);
     break;

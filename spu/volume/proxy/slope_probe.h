@@ -63,6 +63,8 @@ class SlopeProbe {
   /// Opacities of the ray's samples over that field, from the eye on.
   std::vector<double> opacities_over_steep(const LitRay& ray, float value, const volume::Vec3& gradient,
                                            int texels = slope_texels) const;
+  /// By which the light is measured, at most.
+  double steepness() const { return march_.slope_steepness; }
   /// Whether a value's colours allow as steep slopes as the march does.
   bool allows_steep(const LitRay& ray, float value, const volume::Vec3& gradient) const {
     return allowed_steepness(ray, value, gradient) >= march_.slope_steepness;

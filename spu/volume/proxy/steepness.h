@@ -10,8 +10,9 @@
 
 namespace understudy::spu {
 
-/// Whether neither opacity nor colour depend on how steep a slope is, but for what values on the ray differ by.
-/// The ray enters by a face across `axis_of_entry`.
+/// Whether neither opacity nor colour depend on how steep a slope is, but for what values on the ray differ by:
+/// of slopes as steep as those by which light is measured, gentler and steeper ones. The ray enters by a face
+/// across `axis_of_entry`.
 bool is_the_same_for_any_steepness(SlopeProbe& slopes, const LitRay& ray, const LightSpace& directions,
                                    std::size_t axis_of_entry);
 

@@ -31,7 +31,7 @@ enum class Phase {
   watching,        ///< a volume texture exists: draws are looked at
   deferring,       ///< a run of slices is open: every call but more of the same closes it first
   depth_deferred,  ///< watching, and the depth that slices would have written is not there: see
-                   ///< volume/deferred_depth_write.h
+                   ///< volume/depth/deferred_depth_write.h
   compiling,       ///< between glNewList and glEndList: calls are recorded by the driver, not executed
 };
 constexpr int phase_count = 5;

@@ -12,7 +12,6 @@ import struct
 from pathlib import Path
 
 HELLO = b"UNDERLNK"
-LINK_VERSION = 5
 ONLY_ASKS, PLAIN = 1, 2
 MESSAGE_MAGIC = 0x59445355
 MESSAGE_HEAD = struct.Struct("<IBBHQQ")
@@ -28,6 +27,8 @@ def protocol(header):
     return int(found[1]), int(found[2])
 
 
+HANDSHAKE = (ROOT / "compositor/transport/tcp/handshake.h").read_text(encoding="utf-8")
+LINK_VERSION = int(re.search(r"tcp_protocol_version = (\d+);", HANDSHAKE)[1])
 LAUNCHER = protocol("compositor/service/launcher_protocol.h")
 GL_SERVER = protocol("spu/remote/gl_server_protocol.h")
 LINE = protocol("compositor/transport/tcp/line_protocol.h")

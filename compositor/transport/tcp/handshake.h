@@ -31,7 +31,7 @@
 
 namespace understudy::compositor {
 
-constexpr std::uint32_t tcp_protocol_version = 6;  ///< grows with every change of what travels over TCP
+constexpr std::uint32_t tcp_protocol_version = 5;  ///< grows with every change of what travels over TCP
 
 enum class Destination : std::uint8_t {
   nodes,      ///< the render service

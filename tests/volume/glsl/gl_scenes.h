@@ -36,9 +36,10 @@ inline DepthImage tilted_wall(const RenderRequest& request) {
   const Vec4 middle = transform_point(request.texture_to_clip, {0.5, 0.5, 0.5}),
              end = transform_point(request.texture_to_clip, {1, 0.2, 0.9});
   const double there = (middle[2] / middle[3] + 1) / 2, slope = (end[2] / end[3] + 1) / 2 - there;
+  const int middle_column = depth.rect.width / 2;
   for (int y = 0; y < depth.rect.height; ++y)
     for (int x = 0; x < depth.rect.width; ++x)
-      depth.depth.push_back(float(there + slope * (x - depth.rect.width / 2) / depth.rect.width));
+      depth.depth.push_back(float(there + slope * (x - middle_column) / depth.rect.width));
   return depth;
 }
 

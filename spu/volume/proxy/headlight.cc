@@ -418,7 +418,8 @@ std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchC
   }
   for (const LitRay& other :
        lit_rays(slopes, near_and_far_rays(rays, march.steps, box.camera.texture_to_clip))) {
-    if (!shows_light_as_bright(slopes, other, march.steps, light, looked_at))
+    // In a highlight and beside it.
+    if (!shows_light_as_bright(slopes, other, march.steps, light, std::span(looked_at).first(2)))
       return Refusal{"the light is not as bright at the back of the box as at its front"};
   }
   auto lights = without_and_with_clamp(slopes, ray, march.steps, axis, light, measured.range);

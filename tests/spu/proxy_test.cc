@@ -211,6 +211,16 @@ TEST(Proxies, OpacitiesAtWhichRaysEndAreMeasured) {
   }
 }
 
+TEST(Proxies, AnotherOpacityAtWhichRaysEndIsSeen) {
+  RayCasterScene scene(MarchStyle{.ends_at = 0.95F});
+  ASSERT_NE(scene.app, nullptr) << "no EGL context here";
+  scene.caster.set_table(*scene.app, 0.3F);
+  for (const float limit : {0.95F, 0.6F, 0.999F, 0.8F, 0.95F}) {
+    scene.caster.style.ends_at = limit;
+    scene.expect_alike(20, std::to_string(limit), 45);
+  }
+}
+
 TEST(Proxies, AnotherStepAndAnotherTableAreSeen) {
   RayCasterScene scene(MarchStyle{});
   if (!scene.app) GTEST_SKIP() << "no EGL context here";

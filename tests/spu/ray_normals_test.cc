@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "spu/volume/proxy/light_space.h"
+#include "spu/volume/proxy/step_fit.h"
 
 namespace understudy::spu {
 namespace {
@@ -25,7 +26,7 @@ const WayThroughBox along_x{{0, 0.5, 0.5}, {1, 0, 0}};
 
 /// Samples that are all alike.
 std::vector<double> of_opacity(double opacity) {
-  return std::vector<double>(sample_places(steps_along_x(), along_x.way).size(), opacity);
+  return std::vector<double>(places_on_way(steps_along_x(), along_x.way).size(), opacity);
 }
 
 double shares(const std::vector<NormalShare>& normals) {

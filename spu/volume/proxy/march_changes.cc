@@ -14,6 +14,7 @@
 #include "spu/volume/proxy/headlight.h"
 #include "spu/volume/proxy/march_table.h"
 #include "spu/volume/proxy/mean_steps.h"
+#include "spu/volume/proxy/opacity_limit.h"
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/ray_probes.h"
 #include "spu/volume/proxy/sample_places.h"
@@ -57,6 +58,7 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
     if (measure_table(measured, probe, rays, march.steps, changed)) return std::nullopt;
     if (is_black_where_even(march) && !take_facing_colours(measured, probe, box, changed)) return std::nullopt;
     if (!fill_unseen(probe, box, march.steps, changed)) return std::nullopt;
+    changed.opacity_limit = opacity_limit(changed, march.steps, probe, rays);
   }
   if (march.jitter) {
     changed.steps.offsets = ray_offsets(measured.context, measured.run, *march.jitter);

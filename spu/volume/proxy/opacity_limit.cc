@@ -57,6 +57,7 @@ float opacity_limit(const March& march, const volume::RaySteps& steps, FieldProb
   constexpr double rounding = 2e-4;
   constexpr double uneven = 0.1;           // of a number of samples
   constexpr double fewest_left_out = 2.5;  // samples; noise may move a ray by one
+  if (march.shows_one_colour() || march.sum || march.background) return 1;
   const auto middle = rays.middle();
   const auto way = rays.way(middle[0], middle[1]);
   if (!way) return 1;

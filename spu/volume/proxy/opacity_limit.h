@@ -9,9 +9,9 @@
 
 namespace understudy::spu {
 
-/// Of a march whose samples are composed by over, with its table and `steps`: the opacity behind which no
-/// sample is added; 1 where there is none, or none below 0.97. Beyond that, what a ray leaves out is less than
-/// a comparison of images allows, and rays may be cast in parts.
+/// Of a march with its table and `steps`: the opacity behind which no sample is added; 1 where there is none,
+/// none below 0.97, or samples are not composed by over. Beyond that, what a ray leaves out is less than a
+/// comparison of images allows, and rays may be cast in parts.
 float opacity_limit(const March& march, const volume::RaySteps& steps, FieldProbe& probe,
                     const RaysThroughBox& rays);
 

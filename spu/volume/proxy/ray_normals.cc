@@ -27,21 +27,11 @@ Vec3 seen_gradient(const EvenRise& field, const Vec3& place) {
 
 }  // namespace
 
-std::vector<double> sample_places(const volume::RaySteps& steps, const Vec3& way) {
-  const double length = steps_of_way(steps, way);
-  const double samples = std::max(1.0, samples_of_length(steps, length));
-  std::vector<double> places;
-  places.reserve(std::size_t(samples));
-  for (int i = 0; i < int(samples); ++i)
-    places.push_back((steps.first + i) / (steps.divided ? samples : length));
-  return places;
-}
-
 std::vector<NormalShare> ray_normals(const WayThroughBox& way, const volume::RaySteps& steps,
                                      std::span<const double> opacities, const LightSpace& space,
                                      const EvenRise& field) {
   constexpr double same = 1e-6;
-  const std::vector<double> places = sample_places(steps, way.way);
+  const std::vector<double> places = places_on_way(steps, way.way);
   std::vector<NormalShare> normals;
   double through = 1;
   double sum = 0;

@@ -32,9 +32,6 @@ struct EvenRise {
   volume::Vec3 reach{};         ///< to both sides of a sample, in texture space
 };
 
-/// Places of a ray's samples, in parts of its way.
-std::vector<double> sample_places(const volume::RaySteps& steps, const volume::Vec3& way);
-
 /// `opacities` are those of the samples, from the eye on.
 std::vector<NormalShare> ray_normals(const WayThroughBox& way, const volume::RaySteps& steps,
                                      std::span<const double> opacities, const LightSpace& space,

@@ -11,6 +11,7 @@
 #include "spu/volume/classification/table_lookup.h"
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/ray_probes.h"
+#include "spu/volume/proxy/step_fit.h"
 #include "volume/matrix.h"
 
 namespace understudy::spu {
@@ -147,7 +148,7 @@ std::vector<Rgba> SlopeProbe::over(const LitRay& ray, const std::vector<float>& 
 SlopeProbe::SamplesOverRise SlopeProbe::samples_over_rise(const LitRay& ray, float value,
                                                           double rise_of_way) const {
   constexpr int corrections = 3;  // what is seen depends on the values, which depend on what is seen
-  const std::vector<double> places = sample_places(march_.steps, ray.way.way);
+  const std::vector<double> places = places_on_way(march_.steps, ray.way.way);
   SamplesOverRise samples{double(value), std::vector<double>(places.size(), sample_opacity(value))};
   for (int i = 0; i < corrections; ++i) {
     samples.value_at_entry = double(value) - rise_of_way * mean_place_seen(places, samples.opacities);

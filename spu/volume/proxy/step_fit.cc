@@ -272,4 +272,14 @@ double samples_of_length(const volume::RaySteps& steps, double length) {
   return std::max(count, 0.0);
 }
 
+std::vector<double> places_on_way(const volume::RaySteps& steps, const volume::Vec3& way) {
+  const double length = steps_of_way(steps, way);
+  const double samples = std::max(1.0, samples_of_length(steps, length));
+  std::vector<double> places;
+  places.reserve(std::size_t(samples));
+  for (int i = 0; i < int(samples); ++i)
+    places.push_back((steps.first + i) / (steps.divided ? samples : length));
+  return places;
+}
+
 }  // namespace understudy::spu

@@ -59,4 +59,7 @@ double steps_of_way(const volume::RaySteps& steps, const volume::Vec3& way);
 /// Samples on a ray of so many steps.
 double samples_of_length(const volume::RaySteps& steps, double length);
 
+/// Places of the samples on a way, in parts of it.
+std::vector<double> places_on_way(const volume::RaySteps& steps, const volume::Vec3& way);
+
 }  // namespace understudy::spu

@@ -10,13 +10,14 @@ namespace understudy::volume {
 
 namespace {
 
-std::size_t extent(const TexelBox& box, std::size_t axis) {
+std::size_t texels_along(const TexelBox& box, std::size_t axis) {
   return std::size_t(box.high[axis] - box.low[axis]);
 }
 
 /// Where a texel lies among those of `box`.
 std::size_t place(const TexelBox& box, int x, int y, int z) {
-  return (std::size_t(z - box.low[2]) * extent(box, 1) + std::size_t(y - box.low[1])) * extent(box, 0) +
+  return (std::size_t(z - box.low[2]) * texels_along(box, 1) + std::size_t(y - box.low[1])) *
+             texels_along(box, 0) +
          std::size_t(x - box.low[0]);
 }
 
@@ -53,13 +54,13 @@ TexelBox enclosing(const TexelBox& a, const TexelBox& b) {
 }
 
 std::size_t texels_in(const TexelBox& box) {
-  return is_empty(box) ? 0 : extent(box, 0) * extent(box, 1) * extent(box, 2);
+  return is_empty(box) ? 0 : texels_along(box, 0) * texels_along(box, 1) * texels_along(box, 2);
 }
 
 void copy_texels(const TexelBox& box, std::size_t bytes_per_texel, const TexelBox& source_box,
                  std::span<const std::byte> source, const TexelBox& target_box, std::span<std::byte> target) {
   if (is_empty(box)) return;
-  const std::size_t row = extent(box, 0) * bytes_per_texel;
+  const std::size_t row = texels_along(box, 0) * bytes_per_texel;
   for (int z = box.low[2]; z < box.high[2]; ++z)
     for (int y = box.low[1]; y < box.high[1]; ++y)
       std::memcpy(target.data() + place(target_box, box.low[0], y, z) * bytes_per_texel,

@@ -12,6 +12,7 @@
 #include "spu/stream/answers.h"
 #include "spu/stream/event.h"
 #include "spu/stream/extent.h"
+#include "spu/stream/mapping_calls.h"
 
 namespace understudy::spu {
 namespace {
@@ -72,11 +73,6 @@ bool is_text(CallId call) {
 
 std::uint64_t words_of_text(CallId call, const std::uint64_t* words) {
   return words[0] << 32 | (call == CallId::GetStringi ? std::uint32_t(words[1]) + 1 : 0);
-}
-
-bool unmaps(CallId call) {
-  return call == CallId::UnmapBuffer || call == CallId::UnmapBufferARB || call == CallId::UnmapNamedBuffer ||
-         call == CallId::UnmapNamedBufferEXT;
 }
 
 }  // namespace
@@ -307,7 +303,7 @@ void Remote::drop_mappings(CallId call, const std::uint64_t* words) {
       mappings_.erase(mapped_buffer(call, words));
       return;
     default:
-      if (unmaps(call)) mappings_.erase(mapped_buffer(call, words));
+      if (unmaps_buffer(call)) mappings_.erase(mapped_buffer(call, words));
   }
 }
 

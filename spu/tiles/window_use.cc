@@ -56,7 +56,7 @@ std::array<WindowUse, call_count> all_uses() {
 }
 
 /// Calls of which some need a look at their arguments.
-enum class Refusal : std::uint8_t {
+enum class Obstacle : std::uint8_t {
   none,
   accumulation,
   images,
@@ -67,26 +67,26 @@ enum class Refusal : std::uint8_t {
   draw_buffers
 };
 
-Refusal find_refusal(CallId call) {
+Obstacle find_obstacle(CallId call) {
   const std::string_view name = call_name(call);
-  if (name == "glAccum") return Refusal::accumulation;
-  if (name.starts_with("glBindImageTexture")) return Refusal::images;
-  if (gives_handles(name)) return Refusal::handles;
-  if (name.starts_with("glBeginQuery") || name.starts_with("glBeginOcclusionQuery")) return Refusal::query;
-  if (name.starts_with("glBindBuffer")) return Refusal::buffer;
+  if (name == "glAccum") return Obstacle::accumulation;
+  if (name.starts_with("glBindImageTexture")) return Obstacle::images;
+  if (gives_handles(name)) return Obstacle::handles;
+  if (name.starts_with("glBeginQuery") || name.starts_with("glBeginOcclusionQuery")) return Obstacle::query;
+  if (name.starts_with("glBindBuffer")) return Obstacle::buffer;
   if (name == "glDrawBuffer" || name == "glFramebufferDrawBufferEXT" || name == "glNamedFramebufferDrawBuffer")
-    return Refusal::draw_buffer;
+    return Obstacle::draw_buffer;
   if (name.starts_with("glDrawBuffers") || name == "glFramebufferDrawBuffersEXT" ||
       name == "glNamedFramebufferDrawBuffers") {
-    return Refusal::draw_buffers;
+    return Obstacle::draw_buffers;
   }
-  return Refusal::none;
+  return Obstacle::none;
 }
 
-std::array<Refusal, call_count> all_refusals() {
-  std::array<Refusal, call_count> refusals{};
-  for (std::size_t i = 0; i < call_count; ++i) refusals[i] = find_refusal(CallId(i));
-  return refusals;
+std::array<Obstacle, call_count> all_obstacles() {
+  std::array<Obstacle, call_count> obstacles{};
+  for (std::size_t i = 0; i < call_count; ++i) obstacles[i] = find_obstacle(CallId(i));
+  return obstacles;
 }
 
 bool is_front(GLenum buffer) {
@@ -125,23 +125,23 @@ WindowUse window_use(CallId call) {
 }
 
 const char* beyond_tiles(CallId call, const std::uint64_t* words) {
-  static const std::array<Refusal, call_count> refusals = all_refusals();
+  static const std::array<Obstacle, call_count> obstacles = all_obstacles();
   constexpr const char* front = "the application draws into the front buffer";
-  switch (refusals[std::size_t(call)]) {
-    case Refusal::none:
+  switch (obstacles[std::size_t(call)]) {
+    case Obstacle::none:
       return nullptr;
-    case Refusal::accumulation:
+    case Obstacle::accumulation:
       return "the application uses the accumulation buffer";
-    case Refusal::images:
+    case Obstacle::images:
       return "shaders of the application write images";
-    case Refusal::handles:
+    case Obstacle::handles:
       return "the application uses handles of textures";
-    case Refusal::query:
+    case Obstacle::query:
       return std::string_view(call_name(call)).find("Occlusion") != std::string_view::npos ||
                      counts_fragments(GLenum(words[0]))
                  ? "the application counts samples (occlusion queries)"
                  : nullptr;
-    case Refusal::buffer:
+    case Obstacle::buffer:
       switch (GLenum(words[0])) {
         case GL_SHADER_STORAGE_BUFFER:
         case GL_ATOMIC_COUNTER_BUFFER:
@@ -151,12 +151,12 @@ const char* beyond_tiles(CallId call, const std::uint64_t* words) {
         default:
           return nullptr;
       }
-    case Refusal::draw_buffer: {
+    case Obstacle::draw_buffer: {
       // The last argument, with a framebuffer before it or not.
       const std::size_t last = call == CallId::DrawBuffer ? 0 : 1;
       return is_front(GLenum(words[last])) ? front : nullptr;
     }
-    case Refusal::draw_buffers: {
+    case Obstacle::draw_buffers: {
       const std::string_view name = call_name(call);
       const std::size_t count_at = name.starts_with("glDrawBuffers") ? 0 : 1;
       const auto* buffers = reinterpret_cast<const GLenum*>(static_cast<std::uintptr_t>(words[count_at + 1]));

@@ -9,6 +9,7 @@
 #include "spu/stream/answers.h"
 #include "spu/stream/event.h"
 #include "spu/stream/extent.h"
+#include "spu/stream/mapping_calls.h"
 
 namespace understudy::spu {
 namespace {
@@ -19,11 +20,6 @@ void append_write(const std::byte* first, std::size_t offset, std::size_t bytes,
   to.append(offset);
   to.append(0);
   to.set(3, to.attach({first + offset, bytes}).word());
-}
-
-bool unmaps(CallId call) {
-  return call == CallId::UnmapBuffer || call == CallId::UnmapBufferARB || call == CallId::UnmapNamedBuffer ||
-         call == CallId::UnmapNamedBufferEXT;
 }
 
 bool flushes(CallId call) {
@@ -64,7 +60,7 @@ void MappedBuffers::write_changes(Mapping& mapping, Records& to) {
 
 void MappedBuffers::before(const DispatchTable& gl, CallId call, const std::uint64_t* words, Records& to) {
   if (mappings_.empty()) return;
-  if (unmaps(call) || flushes(call)) {
+  if (unmaps_buffer(call) || flushes(call)) {
     const void* pointer = mapped_pointer(gl, call, words[0]);
     const auto found = std::find_if(mappings_.begin(), mappings_.end(),
                                     [&](const Mapping& mapping) { return mapping.first == pointer; });

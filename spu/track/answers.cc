@@ -94,7 +94,7 @@ std::optional<Subject> subject_of(GLenum name) {
 
 /// That no driver answers: says where nothing was written.
 template <class T>
-constexpr T unwritten() {
+constexpr T never_answered() {
   if constexpr (std::is_floating_point_v<T>) {
     return T(-7.61937e29);
   } else if constexpr (sizeof(T) == 1) {
@@ -257,10 +257,10 @@ void Answers::values(CallId call, GLenum name, GLuint index, T* to, Ask ask) {
   const std::optional<Subject> subject = subject_of(name);
   if (!subject) return ask(to);
   std::array<T, 2 * std::size_t(max_state_values)> answered{};
-  answered.fill(unwritten<T>());
+  answered.fill(never_answered<T>());
   ask(answered.data());
   std::size_t count = max_state_values;
-  while (count > 0 && answered[count - 1] == unwritten<T>()) --count;
+  while (count > 0 && answered[count - 1] == never_answered<T>()) --count;
   // Refused, as between glBegin and glEnd; or this very value is the answer.
   if (count == 0) return ask(to);
   count = std::max(count, std::size_t(subject->count));
@@ -279,7 +279,7 @@ GLboolean Answers::enabled(CallId call, GLenum name, GLuint index, Ask ask, IsKn
   // GL_FALSE is also what an error gives; asking in another way makes the same error once more.
   GLboolean value = is;
   if (is == GL_FALSE) {
-    value = unwritten<GLboolean>();
+    value = never_answered<GLboolean>();
     is_known(&value);
   }
   if (value != is) return is;

@@ -14,6 +14,7 @@
 #include "apps/understudy/processes/child_process.h"
 #include "apps/understudy/processes/environment.h"
 #include "apps/understudy/processes/installation.h"
+#include "apps/understudy/processes/last_line.h"
 
 namespace understudy::launcher {
 
@@ -49,14 +50,6 @@ std::filesystem::path written_volume(const std::filesystem::path& folder) {
             static_cast<char>(std::max(0, 255 - 255 * (square(x) + square(y) + square(z)) / (edge * edge))));
       }
   return path;
-}
-
-std::string last_line(const std::filesystem::path& log) {
-  std::ifstream file(log);
-  std::string last;
-  for (std::string line; std::getline(file, line);)
-    if (!line.empty()) last = line;
-  return last;
 }
 
 Finding tried(const Way& way, const std::filesystem::path& volume, const std::filesystem::path& log) {

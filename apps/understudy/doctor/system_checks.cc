@@ -199,7 +199,7 @@ Finding look_apart(const Check& check) {
     alarm(probe_seconds);
     const Finding finding = finding_of(check);
     const std::string message = (finding.works ? "+" : "-") + finding.what;
-    (void)!write(channel[1], message.data(), message.size());
+    (void)!::write(channel[1], message.data(), message.size());
     _exit(0);
   }
   close(channel[1]);

@@ -5,9 +5,10 @@
 #include <signal.h>
 
 #include <algorithm>
-#include <fstream>
 #include <optional>
 #include <system_error>
+
+#include "apps/understudy/processes/last_line.h"
 
 namespace understudy::launcher {
 namespace {
@@ -30,17 +31,6 @@ std::vector<std::string> command_on(const std::string& host, std::vector<std::st
   agent.push_back(host);
   agent.push_back(quoted(node.string()) + " --help >/dev/null");
   return agent;
-}
-
-/// Agents and shells say last what went wrong.
-std::string last_line(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  std::string last;
-  for (std::string line; std::getline(stream, line);) {
-    std::erase_if(line, [](unsigned char c) { return c < ' '; });
-    if (!line.empty()) last = line.substr(0, longest_words);
-  }
-  return last;
 }
 
 }  // namespace
@@ -79,7 +69,7 @@ std::vector<SilentHost> HostProbe::silent() {
     if (!in_time) question.process.end(patience_with_agent_ms);
     const int status = in_time ? endings[i]->exit_status() : -1;
     if (status == 0) continue;
-    const std::string words = last_line(question.words);
+    const std::string words = last_line(question.words).substr(0, longest_words);
     const std::string why = words.empty() ? "" : fmt::format(" ({})", words);
     if (!in_time)
       silent.push_back({question.host, fmt::format("does not answer within {} s", patience_with_host.count())});

@@ -14,7 +14,7 @@ namespace understudy::launcher {
 
 namespace {
 
-using Words = std::span<const std::string>;
+using WordSpan = std::span<const std::string>;
 
 /// How many letters must be inserted, left out, replaced or exchanged with the next (Damerau 1964, without
 /// moves over longer distances).
@@ -35,7 +35,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return last[b.size()];
 }
 
-std::string with_nearest(std::string sentence, const std::string& word, Words known) {
+std::string with_nearest(std::string sentence, const std::string& word, WordSpan known) {
   if (const std::string nearest = nearest_word(word, known); !nearest.empty())
     sentence += fmt::format("; did you mean '{}'?", nearest);
   return sentence;
@@ -68,7 +68,7 @@ const CLI::App* subcommand_of(const CLI::App& app, const std::string& word) {
 
 /// The first word that was left over, in the order of the line: an option that `subcommand` does not have, or a
 /// word that belongs to no option.
-std::optional<std::string> left_over(const CLI::App& subcommand, Words words) {
+std::optional<std::string> left_over(const CLI::App& subcommand, WordSpan words) {
   const std::vector<std::string> all = subcommand.remaining();
   const auto found = std::ranges::find_if(
       words, [&](const std::string& word) { return std::ranges::find(all, word) != all.end(); });
@@ -82,7 +82,7 @@ struct WrongValue {
   std::vector<std::string> known;
 };
 
-std::optional<WrongValue> wrong_value(const CLI::App& subcommand, const std::string& message, Words words) {
+std::optional<WrongValue> wrong_value(const CLI::App& subcommand, const std::string& message, WordSpan words) {
   for (const OptionRow& row : option_rows(subcommand)) {
     if (row.values.empty()) continue;
     const std::vector<std::string> names = row.names.empty() ? std::vector{row.place} : row.names;
@@ -105,7 +105,7 @@ std::optional<WrongValue> wrong_value(const CLI::App& subcommand, const std::str
   return {};
 }
 
-std::string explanation(const CLI::App& app, Words words, const CLI::ParseError& error) {
+std::string explanation(const CLI::App& app, WordSpan words, const CLI::ParseError& error) {
   if (words.empty())
     return fmt::format("what is to be done? Give one of {}", fmt::join(subcommand_names(app), ", "));
   const CLI::App* const subcommand = subcommand_of(app, words.front());
@@ -116,7 +116,7 @@ std::string explanation(const CLI::App& app, Words words, const CLI::ParseError&
                                     words.front().starts_with('-') ? "option" : "subcommand", words.front()),
                         words.front(), known);
   }
-  const Words own = words.subspan(1);
+  const WordSpan own = words.subspan(1);
   const std::string& name = subcommand->get_name();
   const bool too_much = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   const bool too_little = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
@@ -139,7 +139,7 @@ std::string explanation(const CLI::App& app, Words words, const CLI::ParseError&
 
 }  // namespace
 
-std::string nearest_word(const std::string& word, Words known) {
+std::string nearest_word(const std::string& word, WordSpan known) {
   std::string nearest;
   // A third of the letters may be wrong.
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
@@ -153,7 +153,7 @@ std::string nearest_word(const std::string& word, Words known) {
   return nearest;
 }
 
-std::string usage_error_text(const CLI::App& app, Words words, const CLI::ParseError& error) {
+std::string usage_error_text(const CLI::App& app, WordSpan words, const CLI::ParseError& error) {
   const CLI::App* const subcommand = words.empty() ? nullptr : subcommand_of(app, words.front());
   return fmt::format("{0}: {1}\n`{0}{2} --help` lists what there is", app.get_name(),
                      explanation(app, words, error), subcommand != nullptr ? " " + words.front() : "");

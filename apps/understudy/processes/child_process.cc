@@ -95,7 +95,7 @@ ChildProcess::ChildProcess(const Command& command) : own_group_(command.own_grou
   if (pid_ == 0) {
     become(command, arguments.data(), environment.data(), parent);
     const int reason = errno;
-    (void)!write(failure[1], &reason, sizeof reason);
+    (void)!::write(failure[1], &reason, sizeof reason);
     _exit(127);
   }
   int reason = pid_ < 0 ? errno : 0;

@@ -8,12 +8,10 @@
 #include "spu/volume/proxy/light_space.h"
 
 namespace understudy::spu {
-namespace {
 
-/// How many texels away gradients look along an axis, where the ray shows it: between stripes of nearly one
-/// value, samples are lit that have another stripe within their reach.
-std::optional<double> reach_along(SlopeProbe& slopes, const LitRay& ray, const volume::Light& light,
-                                  std::size_t axis) {
+/// Between stripes of nearly one value, samples are lit that have another stripe within their reach.
+std::optional<double> gradient_reach_along(SlopeProbe& slopes, const LitRay& ray, const volume::Light& light,
+                                           std::size_t axis) {
   constexpr double tells = 0.05;
   const double cosine = LightSpace(light, ray.way.way).cosine_across(axis);
   const Tint base = tint_of(ray.base.front());
@@ -38,10 +36,11 @@ std::optional<double> reach_along(SlopeProbe& slopes, const LitRay& ray, const v
   constexpr int narrow = 16;
   double reach = reach_by(wide);
   if (reach < narrow * FieldProbe::split_unit / 4) reach = reach_by(narrow);
-  return slopes.reach_in_stripes(axis, reach);
+  const double texels = slopes.reach_in_stripes(axis, reach);
+  // Whole texels or halves, but for what counting samples leaves open.
+  const double halves = std::round(2 * texels) / 2;
+  return halves >= 1 && std::abs(texels - halves) < 0.1 ? halves : texels;
 }
-
-}  // namespace
 
 std::optional<std::array<double, 3>> gradient_reach(SlopeProbe& slopes, const LitRay& ray,
                                                     const volume::Light& light) {
@@ -50,12 +49,8 @@ std::optional<std::array<double, 3>> gradient_reach(SlopeProbe& slopes, const Li
   std::array<std::optional<double>, 3> seen;
   std::vector<double> known;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    seen[axis] = reach_along(slopes, ray, light, axis);
-    if (!seen[axis]) continue;
-    // Whole texels or halves, but for what counting samples leaves open.
-    const double halves = std::round(2 * *seen[axis]) / 2;
-    if (halves >= 1 && std::abs(*seen[axis] - halves) < 0.1) seen[axis] = halves;
-    known.push_back(*seen[axis]);
+    seen[axis] = gradient_reach_along(slopes, ray, light, axis);
+    if (seen[axis]) known.push_back(*seen[axis]);
   }
   std::array<double, 3> reach{};
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -438,7 +438,8 @@ bool still_lit(const MarchContext& measured, FieldProbe& probe, const ProxyBox& 
          shows_light(slopes, *ray, march.steps, *march.light, looked_at, coarse_texels);
 }
 
-bool gradients_still_reach(const MarchContext& measured, const ProxyBox& box, const March& march) {
+bool gradients_still_reach(const MarchContext& measured, const ProxyBox& box, const March& march,
+                           std::span<const std::size_t> axes) {
   constexpr double same = 0.1;  // of a texel
   FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
   if (!probe.complete() || !held_still(measured, probe, march)) return false;
@@ -446,11 +447,10 @@ bool gradients_still_reach(const MarchContext& measured, const ProxyBox& box, co
   SlopeProbe slopes(measured, probe, march);
   const auto ray = ray_of_half_seen_value(slopes, rays, march);
   if (!ray || !is_translucent(ray->base.front())) return false;
-  const auto reach = gradient_reach(slopes, *ray, *march.light);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!reach || std::abs((*reach)[axis] - march.light->reach[axis]) > same) return false;
-  }
-  return true;
+  return std::ranges::all_of(axes, [&](std::size_t axis) {
+    const auto reach = gradient_reach_along(slopes, *ray, *march.light, axis);
+    return !reach || std::abs(*reach - march.light->reach[axis]) <= same;
+  });
 }
 
 }  // namespace understudy::spu

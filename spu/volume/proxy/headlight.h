@@ -12,6 +12,8 @@
 // the volume has. What they add is taken away once it is known how far gradients look.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -31,7 +33,9 @@ std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchC
 /// Whether a ray over two slopes looks as `march`, which has light, says.
 bool still_lit(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box, const March& march);
 
-/// Whether its gradients look as far as `march`, which has light, says.
-bool gradients_still_reach(const MarchContext& measured, const ProxyBox& box, const March& march);
+/// Whether its gradients look as far along these axes as `march`, which has light, says, as far as a ray shows
+/// it.
+bool gradients_still_reach(const MarchContext& measured, const ProxyBox& box, const March& march,
+                           std::span<const std::size_t> axes);
 
 }  // namespace understudy::spu

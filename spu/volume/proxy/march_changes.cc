@@ -188,7 +188,7 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
 
 bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box,
                   const PlacesLookedAt& looked_at) {
-  if (march.light && !gradients_still_reach(measured, box, march)) return false;
+  if (march.light && !gradients_still_reach(measured, box, march, looked_at.axes_of_gradients)) return false;
   if (!box.cuts.empty()) return true;
   if (march.shows_one_colour())
     return !march.steps_seen || samples_lie_as_said(measured, march, box).value_or(true);

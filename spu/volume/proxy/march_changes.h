@@ -3,8 +3,10 @@
 // few rays tell, where measuring everything again takes hundreds.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include "spu/volume/proxy/march.h"
 #include "spu/volume/proxy/sample_places.h"
@@ -36,15 +38,15 @@ struct RaysLookedAt {
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box,
                    const RaysLookedAt& looked_at);
 
-/// How closely the places of samples are looked at.
+/// How closely the places of samples are looked at, and of those that gradients are taken from.
 struct PlacesLookedAt {
   int values = 32;  ///< of which two that tell are chosen
   SplitBands bands{};
+  std::vector<std::size_t> axes_of_gradients{0, 1, 2};
 };
-/// Where steps have another length, and nothing else is known to be new.
-constexpr PlacesLookedAt few_places{.values = 8, .bands = {.number = 2, .halves = true}};
 
-/// Whether samples still lie on rays where `march` says, as far as fields tell.
+/// Whether samples still lie on rays where `march` says, and their gradients look as far, as far as fields
+/// tell.
 bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box,
                   const PlacesLookedAt& looked_at);
 

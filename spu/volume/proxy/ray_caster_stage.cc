@@ -109,6 +109,12 @@ RaysLookedAt rays_looked_at(const March& march, bool turned, std::uint64_t frame
   return {.values = values ? 3 : 0, .offset = offset_of_values(frame), .long_ray = !values};
 }
 
+/// Where steps have another length, as in every frame while somebody turns a volume in VTK, and nothing else is
+/// known to be new: another axis each time.
+PlacesLookedAt few_places(std::uint64_t frame) {
+  return {.values = 8, .bands = {.number = 2, .halves = true}, .axes_of_gradients = {std::size_t(frame % 3)}};
+}
+
 /// As the last one.
 void remember(MeasuredMarch march, std::vector<MeasuredMarch>& measured) {
   constexpr std::size_t most_remembered = 4;  // two boxes of one program, each with and without a setting
@@ -363,7 +369,7 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
   if (march && !again && !step_unknown) again = with_new_table(draw.measured(), *march, box);
   // What counts samples does not see noise that was turned on.
   if (again && !only_tables_differ(known.inputs, inputs) &&
-      !still_placed(draw.measured(), *again, box, derived ? few_places : PlacesLookedAt{}))
+      !still_placed(draw.measured(), *again, box, derived ? few_places(account_.frames()) : PlacesLookedAt{}))
     again.reset();
   march = again;
   if (!again) {

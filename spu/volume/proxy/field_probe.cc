@@ -181,25 +181,32 @@ std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::span<con
   });
 }
 
-std::vector<volume::Rgba> FieldProbe::at_gradient(double x, double y, std::span<const SlopedField> fields,
-                                                  const EvenSlope& slope) {
-  std::array<int, 3> size{};
+FieldProbe::Heights FieldProbe::heights_of(const EvenSlope& slope) {
+  Heights heights{slope, {}, {}};
+  std::array<int, 3>& size = heights.size;
   for (std::size_t axis = 0; axis < 3; ++axis) size[axis] = slope.gradient[axis] == 0 ? 1 : slope.texels[axis];
   const auto height = [&](std::size_t axis, int i) {
     return slope.gradient[axis] * ((i + 0.5) / size[axis] - slope.place[axis]);
   };
-  std::vector<float> heights;
   for (int k = 0; k < size[2]; ++k) {
     for (int j = 0; j < size[1]; ++j) {
-      for (int i = 0; i < size[0]; ++i) heights.push_back(float(height(0, i) + height(1, j) + height(2, k)));
+      for (int i = 0; i < size[0]; ++i)
+        heights.texels.push_back(float(height(0, i) + height(1, j) + height(2, k)));
     }
   }
-  std::vector<float> texels(heights.size());
+  return heights;
+}
+
+std::vector<volume::Rgba> FieldProbe::at_slopes(double x, double y, std::span<const SlopedField> fields) {
+  std::optional<Heights> heights;
+  std::vector<float> texels;
   return drawn_at(x, y, fields.size(), [&](std::size_t f) {
     const SlopedField& field = fields[f];
-    std::ranges::transform(heights, texels.begin(),
+    if (!heights || heights->slope != field.slope) heights = heights_of(field.slope);
+    texels.resize(heights->texels.size());
+    std::ranges::transform(heights->texels, texels.begin(),
                            [&](float height) { return field.value + field.steepness * height; });
-    show(texels, size, GL_LINEAR);
+    show(texels, heights->size, GL_LINEAR);
   });
 }
 

@@ -55,13 +55,15 @@ class FieldProbe {
     volume::Vec3 gradient{};
     volume::Vec3 place{};                ///< where the field has its value
     std::array<int, 3> texels{2, 2, 2};  ///< along an axis on which it does not rise there is one
+
+    bool operator==(const EvenSlope&) const = default;
   };
   struct SlopedField {
     float value = 0;      ///< at the slope's place
     float steepness = 1;  ///< times the slope's gradient
+    EvenSlope slope{};
   };
-  std::vector<volume::Rgba> at_gradient(double x, double y, std::span<const SlopedField> fields,
-                                        const EvenSlope& slope);
+  std::vector<volume::Rgba> at_slopes(double x, double y, std::span<const SlopedField> fields);
 
   /// The same over fields that take two values in turn along the texture coordinate `axis`.
   struct StripedField {
@@ -142,6 +144,13 @@ class FieldProbe {
   const std::array<GLint, 2>& largest_viewport() const { return largest_viewport_; }
 
  private:
+  /// Of texels over the place where the field has its value.
+  struct Heights {
+    EvenSlope slope;
+    std::array<int, 3> size{};
+    std::vector<float> texels;
+  };
+  static Heights heights_of(const EvenSlope& slope);
   bool of_bytes(std::span<const float> texels) const;
   void show(std::span<const float> texels, const std::array<int, 3>& size, GLint filter);
   void show(const std::array<float, 8>& corners);

@@ -39,16 +39,30 @@ struct SeenSlope {
   std::vector<Tint> tints{};  ///< of the ray's values
 };
 
-/// Null where it shows nothing, or another opacity than even fields.
-std::optional<SeenSlope> seen_slope(SlopeProbe& slopes, const LitRay& ray, const LightSpace& directions,
-                                    double angle, double turn, int texels = slope_texels) {
-  const volume::Vec3 gradient = directions.gradient(angle, turn);
-  const std::vector<Rgba> shown = slopes.over_steep(ray, ray.values, gradient, texels);
-  for (std::size_t v = 0; v < shown.size(); ++v) {
-    if (!reached(shown[v]) || !(std::abs(shown[v][3] - ray.base[v][3]) < another_opacity) || !(shown[v][3] > 0))
-      return std::nullopt;
+/// A slope whose normal has this angle to the eye, and is turned so far about the ray.
+struct LookedAt {
+  double angle = 0;
+  double turn = 0;
+};
+
+/// Empty where one shows nothing, or another opacity than even fields.
+std::vector<SeenSlope> seen_slopes(SlopeProbe& slopes, const LitRay& ray, const LightSpace& directions,
+                                   std::span<const LookedAt> looked_at, int texels = slope_texels) {
+  std::vector<volume::Vec3> gradients;
+  gradients.reserve(looked_at.size());
+  for (const LookedAt& slope : looked_at) gradients.push_back(directions.gradient(slope.angle, slope.turn));
+  const std::vector<Rgba> shown = slopes.over_steep(ray, ray.values, gradients, texels);
+  std::vector<SeenSlope> seen;
+  for (std::size_t i = 0; i < looked_at.size(); ++i) {
+    const std::span of_slope = std::span(shown).subspan(i * ray.values.size(), ray.values.size());
+    for (std::size_t v = 0; v < of_slope.size(); ++v) {
+      if (!reached(of_slope[v]) || !(std::abs(of_slope[v][3] - ray.base[v][3]) < another_opacity) ||
+          !(of_slope[v][3] > 0))
+        return {};
+    }
+    seen.push_back({gradients[i], std::cos(looked_at[i].angle), tints_of({of_slope.begin(), of_slope.end()})});
   }
-  return SeenSlope{gradient, std::cos(angle), tints_of(shown)};
+  return seen;
 }
 
 /// What `light` shows of a slope, value by value, once it is known how far gradients look.
@@ -68,16 +82,15 @@ std::vector<Tint> expected_tints(const SlopeProbe& slopes, const LitRay& ray, co
 /// Slopes at a few angles to the eye, each turned about the ray; empty where there is nothing to see.
 std::vector<std::vector<SeenSlope>> turned_slopes(SlopeProbe& slopes, const LitRay& ray,
                                                   const volume::Light& light) {
-  const LightSpace directions(light, ray.way.way);
-  std::vector<std::vector<SeenSlope>> turned;
+  constexpr std::size_t turns = 4;
+  std::vector<LookedAt> looked_at;
   for (const double angle : {0.4, 0.8, 1.2, 2.2}) {
-    turned.emplace_back();
-    for (int i = 0; i < 4; ++i) {
-      auto seen = seen_slope(slopes, ray, directions, angle, 0.3 + M_PI / 2 * i);
-      if (!seen) return {};
-      turned.back().push_back(*std::move(seen));
-    }
+    for (std::size_t i = 0; i < turns; ++i) looked_at.push_back({angle, 0.3 + M_PI / 2 * double(i)});
   }
+  const std::vector<SeenSlope> seen = seen_slopes(slopes, ray, LightSpace(light, ray.way.way), looked_at);
+  std::vector<std::vector<SeenSlope>> turned;
+  for (auto at_angle = seen.begin(); at_angle != seen.end(); at_angle += turns)
+    turned.emplace_back(at_angle, at_angle + turns);
   return turned;
 }
 
@@ -237,19 +250,13 @@ bool is_explained(const SlopeProbe& slopes, const LitRay& ray, const volume::Ray
   return true;
 }
 
-/// A slope whose normal has this angle to the eye, and is turned so far about the ray.
-struct LookedAt {
-  double angle = 0;
-  double turn = 0;
-};
-
 /// Whether `ray` shows the light on these slopes.
 bool shows_light(SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& steps,
                  const volume::Light& light, std::span<const LookedAt> looked_at, int texels) {
-  const LightSpace directions(light, ray.way.way);
-  return std::ranges::all_of(looked_at, [&](const LookedAt& slope) {
-    const auto seen = seen_slope(slopes, ray, directions, slope.angle, slope.turn, texels);
-    return seen && is_explained(slopes, ray, steps, light, *seen, texels);
+  const std::vector<SeenSlope> seen =
+      seen_slopes(slopes, ray, LightSpace(light, ray.way.way), looked_at, texels);
+  return !seen.empty() && std::ranges::all_of(seen, [&](const SeenSlope& slope) {
+    return is_explained(slopes, ray, steps, light, slope, texels);
   });
 }
 
@@ -264,19 +271,20 @@ bool shows_light_as_bright(SlopeProbe& slopes, const LitRay& ray, const volume::
   const auto expected = [&](const LookedAt& slope, double aside) {
     return expected_tints(slopes, ray, steps, light, {directions.gradient(slope.angle + aside, slope.turn)});
   };
-  return std::ranges::all_of(looked_at, [&](const LookedAt& slope) {
-    const auto seen = seen_slope(slopes, ray, directions, slope.angle, slope.turn);
-    if (!seen) return false;
+  const std::vector<SeenSlope> seen = seen_slopes(slopes, ray, directions, looked_at);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const LookedAt& slope = looked_at[i];
+    const std::vector<Tint>& tints = seen[i].tints;
     const std::array all{expected(slope, 0), expected(slope, -angle_unsure), expected(slope, angle_unsure)};
-    const double allowed = same * std::max(1.0, brightest(seen->tints));
-    for (std::size_t v = 0; v < seen->tints.size(); ++v) {
+    const double allowed = same * std::max(1.0, brightest(tints));
+    for (std::size_t v = 0; v < tints.size(); ++v) {
       for (std::size_t c = 0; c < 3; ++c) {
         const auto [least, most] = std::minmax({all[0][v][c], all[1][v][c], all[2][v][c]});
-        if (seen->tints[v][c] < least - allowed || seen->tints[v][c] > most + allowed) return false;
+        if (tints[v][c] < least - allowed || tints[v][c] > most + allowed) return false;
       }
     }
-    return true;
-  });
+  }
+  return !seen.empty();
 }
 
 /// Of one ray, whatever the others show, going by slopes at angles from 0 to pi. What samples at the
@@ -318,13 +326,10 @@ std::variant<volume::Light, Refusal> light_and_reach(SlopeProbe& slopes, const L
                                                      const volume::RaySteps& steps, volume::Light light) {
   constexpr int rounds = 2;
   constexpr int corrections = 4;
-  const LightSpace directions(light, ray.way.way);
-  std::vector<SeenSlope> seen;
-  for (int i = 0; i < angles; ++i) {
-    auto slope = seen_slope(slopes, ray, directions, M_PI * i / (angles - 1), golden * i);
-    if (!slope) return Refusal{"fields with a slope show nothing"};
-    seen.push_back(*std::move(slope));
-  }
+  std::vector<LookedAt> looked_at;
+  for (int i = 0; i < angles; ++i) looked_at.push_back({M_PI * i / (angles - 1), golden * i});
+  const std::vector<SeenSlope> seen = seen_slopes(slopes, ray, LightSpace(light, ray.way.way), looked_at);
+  if (seen.empty()) return Refusal{"fields with a slope show nothing"};
   auto found = light_on(slopes, ray, steps, seen, light);
   for (int round = 0; round < rounds; ++round) {
     if (!std::holds_alternative<volume::Light>(found)) return found;

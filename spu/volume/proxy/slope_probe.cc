@@ -130,19 +130,22 @@ std::vector<Rgba> SlopeProbe::base(double x, double y, const std::vector<float>&
   return colours;
 }
 
-std::vector<Rgba> SlopeProbe::over(const LitRay& ray, const std::vector<float>& values, const Vec3& gradient,
-                                   const std::function<double(float)>& steepness_for, int texels) {
+std::vector<Rgba> SlopeProbe::over(const LitRay& ray, const std::vector<float>& values,
+                                   std::span<const Vec3> gradients,
+                                   const std::function<double(float, const Vec3&)>& steepness_for, int texels) {
   const std::array<int, 3> size = field_size(texels);
-  const Vec3 slope = risen(gradient, 1, size);
-  const double rise_of_way = volume::dot(slope, ray.way.way);
   std::vector<FieldProbe::SlopedField> fields;
-  fields.reserve(values.size());
-  for (const float value : values) {
-    const double steepness = steepness_for(value);
-    const double at_entry = samples_over_rise(ray, value, steepness * rise_of_way).value_at_entry;
-    fields.push_back({float(at_entry), float(steepness)});
+  fields.reserve(gradients.size() * values.size());
+  for (const Vec3& gradient : gradients) {
+    const Vec3 slope = risen(gradient, 1, size);
+    const double rise_of_way = volume::dot(slope, ray.way.way);
+    for (const float value : values) {
+      const double steepness = steepness_for(value, gradient);
+      const double at_entry = samples_over_rise(ray, value, steepness * rise_of_way).value_at_entry;
+      fields.push_back({float(at_entry), float(steepness), {slope, ray.way.entry, size}});
+    }
   }
-  return premultiplied_all(probe_.at_gradient(ray.x, ray.y, fields, {slope, ray.way.entry, size}));
+  return premultiplied_all(probe_.at_slopes(ray.x, ray.y, fields));
 }
 
 SlopeProbe::SamplesOverRise SlopeProbe::samples_over_rise(const LitRay& ray, float value,

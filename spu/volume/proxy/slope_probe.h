@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "spu/volume/proxy/field_probe.h"
@@ -51,14 +52,21 @@ class SlopeProbe {
   std::vector<volume::Rgba> over(const LitRay& ray, const std::vector<float>& values,
                                  const volume::Vec3& gradient, double steepness, int texels = slope_texels) {
     return over(
-        ray, values, gradient, [=](float) { return steepness; }, texels);
+        ray, values, {&gradient, 1}, [=](float, const volume::Vec3&) { return steepness; }, texels);
   }
   /// The same as steep as each value's colours allow, and the march: a program that keeps its normals from a
   /// division by zero, as by slope / (length(slope) + 1e-6), makes them shorter the gentler the slope is.
   std::vector<volume::Rgba> over_steep(const LitRay& ray, const std::vector<float>& values,
                                        const volume::Vec3& gradient, int texels = slope_texels) {
+    return over_steep(ray, values, {&gradient, 1}, texels);
+  }
+  /// Gradient by gradient, all values of each: what is seen of all is read at once.
+  std::vector<volume::Rgba> over_steep(const LitRay& ray, const std::vector<float>& values,
+                                       std::span<const volume::Vec3> gradients, int texels = slope_texels) {
     return over(
-        ray, values, gradient, [&](float value) { return allowed_steepness(ray, value, gradient); }, texels);
+        ray, values, gradients,
+        [&](float value, const volume::Vec3& gradient) { return allowed_steepness(ray, value, gradient); },
+        texels);
   }
   /// Opacities of the ray's samples over that field, from the eye on.
   std::vector<double> opacities_over_steep(const LitRay& ray, float value, const volume::Vec3& gradient,
@@ -100,8 +108,9 @@ class SlopeProbe {
   /// Of all over the range of values.
   float least_rise() const;
   std::vector<volume::Rgba> over(const LitRay& ray, const std::vector<float>& values,
-                                 const volume::Vec3& gradient,
-                                 const std::function<double(float)>& steepness_for, int texels);
+                                 std::span<const volume::Vec3> gradients,
+                                 const std::function<double(float, const volume::Vec3&)>& steepness_for,
+                                 int texels);
   struct SamplesOverRise {
     double value_at_entry = 0;
     std::vector<double> opacities;

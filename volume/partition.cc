@@ -135,6 +135,10 @@ std::vector<TexelBox> boxes(const Partition& partition, const VolumeDescription&
   return result;
 }
 
+Partition initial_partition(const VolumeDescription& volume, int ranks, PartitionMethod method) {
+  return method == PartitionMethod::factors ? by_factors(volume, ranks) : by_blocks(volume, ranks);
+}
+
 Partition by_blocks(const VolumeDescription& volume, int ranks) {
   const TexelBox lattice = cell_lattice(volume).box();
   return divided(lattice, ranks, [&](const TexelBox& cells, int, int here) {
@@ -202,9 +206,13 @@ std::optional<int> fair_cut(const CostSums& costs, const TexelBox& cells, int ax
 }
 
 Partition by_cost(const VolumeDescription& volume, int ranks, const CostSums& costs) {
-  const TexelBox lattice = cell_lattice(volume).box();
-  if (!(lattice == costs.costs().lattice()))
+  if (!(cell_lattice(volume).box() == costs.costs().lattice()))
     throw std::invalid_argument("the costs are those of another volume: make them for this volume's lattice");
+  return by_cost(ranks, costs);
+}
+
+Partition by_cost(int ranks, const CostSums& costs) {
+  const TexelBox& lattice = costs.costs().lattice();
   return divided(lattice, ranks, [&](const TexelBox& cells, int, int here) {
     const int left = here / 2;
     const double all = costs.within(cells);

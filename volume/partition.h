@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -40,6 +41,15 @@ std::vector<TexelBox> boxes(const Partition& partition, const VolumeDescription&
 /// The box that each split cuts, in the order of the splits.
 std::vector<TexelBox> cut_boxes(const Partition& partition, const TexelBox& lattice);
 
+/// How the members of a group divide a volume.
+enum class PartitionMethod : std::uint8_t {
+  blocks,   ///< by_blocks()
+  factors,  ///< by_factors()
+  cost,     ///< by_cost() once an image is asked for, and until then by_blocks()
+};
+/// Before any image is asked for.
+Partition initial_partition(const VolumeDescription& volume, int ranks, PartitionMethod method);
+
 /// Boxes with about as many blocks each: the longest axis is halved, in proportion to the ranks on either side.
 Partition by_blocks(const VolumeDescription& volume, int ranks);
 
@@ -49,6 +59,8 @@ std::array<int, 3> factors(const VolumeDescription& volume, int ranks);
 
 /// Boxes that cost about the same: of the three axes the one is cut that divides the costs best, the longest of
 /// those about equally good.
+Partition by_cost(int ranks, const CostSums& costs);
+/// The same; throws std::invalid_argument when the costs are those of another volume.
 Partition by_cost(const VolumeDescription& volume, int ranks, const CostSums& costs);
 
 /// Where across `axis` to cut `cells`, such that the low side's part of the costs is nearest to `share`: on the

@@ -112,6 +112,13 @@ void add_options(CLI::App& app, NodeOptions& options) {
       },
       "Whether ranks divide volumes or images: last, first, hybrid or auto");
   app.add_option_function<std::string>(
+      "--partition",
+      [&sort = options.sort](const std::string& name) {
+        if (!compositor::set_partition(sort, name))
+          throw CLI::ValidationError("--partition", "there is no '" + name + "'");
+      },
+      "How ranks divide a volume: blocks, factors, cost or auto");
+  app.add_option_function<std::string>(
       "--balance",
       [&balance = options.balance.balance](const std::string& name) {
         if (!compositor::set_balance(balance, name))

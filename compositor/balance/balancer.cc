@@ -17,7 +17,9 @@ bool set_balance(Balance& balance, std::string_view name) {
   return false;
 }
 
-std::unique_ptr<Balancer> make_balancer(Balance balance) {
+namespace {
+
+std::unique_ptr<Balancer> moving_balancer(Balance balance) {
   switch (balance) {
     case Balance::off:
       return nullptr;
@@ -27,6 +29,13 @@ std::unique_ptr<Balancer> make_balancer(Balance balance) {
       return predicting_balancer();
   }
   return nullptr;
+}
+
+}  // namespace
+
+std::unique_ptr<Balancer> make_balancer(Balance balance, volume::PartitionMethod method) {
+  auto moving = moving_balancer(balance);
+  return method == volume::PartitionMethod::cost ? cutting_balancer(std::move(moving)) : std::move(moving);
 }
 
 }  // namespace understudy::compositor

@@ -39,8 +39,7 @@ class Balancer {
  public:
   virtual ~Balancer() = default;
 
-  /// The partition for the image to come: the same tree, some of its planes elsewhere. To be called before
-  /// every image of the volume, in their order.
+  /// The partition for the image to come. To be called before images of the volume, in their order.
   virtual volume::Partition decide(const BalanceInput& input) = 0;
 
  protected:
@@ -87,7 +86,18 @@ struct PredictingSettings {
 };
 std::unique_ptr<Balancer> predicting_balancer(const PredictingSettings& settings = {});
 
-/// None for `off`.
-std::unique_ptr<Balancer> make_balancer(Balance balance);
+/// Cuts the volume anew where that makes the dearest rank's samples, as they are expected, fewer (by_cost): for
+/// the first image, and then, where it is not `then` that goes on, whenever it is asked and the gain in the
+/// next `horizon` images is more than what the blocks take to travel.
+struct CuttingSettings {
+  double horizon = 8;
+  double least_gain = 0.05;  ///< as a part of the dearest rank's samples
+};
+std::unique_ptr<Balancer> cutting_balancer(std::unique_ptr<Balancer> then,
+                                           const CuttingSettings& settings = {});
+
+/// None for `off`, where the volume is not cut by cost.
+std::unique_ptr<Balancer> make_balancer(Balance balance,
+                                        volume::PartitionMethod method = volume::PartitionMethod::blocks);
 
 }  // namespace understudy::compositor

@@ -12,8 +12,6 @@ namespace understudy::compositor {
 using volume::Partition;
 using volume::TexelBox;
 
-namespace {}  // namespace
-
 std::vector<int> ranks_under(const Partition& partition, int child) {
   if (child < 0) return {~child};
   const Partition::Split& split = partition.splits[std::size_t(child)];

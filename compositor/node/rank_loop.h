@@ -43,8 +43,10 @@ class RankLoop {
         memories_(communicator, settings.exchange.gather),
         compositing_(communicator, settings.exchange),
         overlap_(settings.exchange.overlap) {
-    if (settings.balance.balance != Balance::off && !may_divide_images_ && communicator.size() > 1)
-      rebalancer_.emplace(communicator, renderer_, settings.balance);
+    const bool moves =
+        settings.balance.balance != Balance::off || settings.sort.partition == volume::PartitionMethod::cost;
+    if (moves && !may_divide_images_ && communicator.size() > 1)
+      rebalancer_.emplace(communicator, renderer_, settings.balance, settings.sort.partition);
   }
 
   bool lead(const std::string& control_path, std::chrono::milliseconds stall_patience);

@@ -73,14 +73,28 @@ double deviation(std::span<const RankWork> work) {
 
 }  // namespace
 
-Rebalancer::Rebalancer(Communicator& communicator, RankRenderer& renderer, BalanceSettings settings)
-    : communicator_(communicator), renderer_(renderer), settings_(std::move(settings)) {}
+Rebalancer::Rebalancer(Communicator& communicator, RankRenderer& renderer, BalanceSettings settings,
+                       volume::PartitionMethod method)
+    : communicator_(communicator), renderer_(renderer), settings_(std::move(settings)), method_(method) {}
+
+Rebalancer::Appearance Rebalancer::appearance(const volume::RenderRequest& request) {
+  return {request.op, request.classification, request.surfaces, request.clip_planes, request.region};
+}
+
+/// Whether its partition may be another for this image. Ranks that even out measured times look at each; by
+/// expected costs alone it is cut for another appearance, and now and then, as the camera moves.
+bool Rebalancer::is_due(const Volume& volume, const volume::RenderRequest& request) const {
+  constexpr int images_between = 8;
+  return settings_.balance != Balance::off || volume.images_since >= images_between ||
+         volume.cut_for != appearance(request);
+}
 
 /// What of an image can be known, and fail, on one rank alone: its request, and what this rank expects it to
 /// cost.
 struct Rebalancer::Expected {
   std::optional<volume::RenderRequest> request;
   Volume* volume = nullptr;
+  bool due = false;  ///< the following are empty otherwise
   std::vector<TexelBox> boxes;
   std::optional<BlockCosts> costs;
   std::vector<float> mine, all;          ///< of the cubes that each rank's box touches
@@ -92,8 +106,13 @@ Rebalancer::Volume& Rebalancer::volume_of(VolumeKey key) {
   auto known = volumes_.find(key);
   if (known == volumes_.end())
     known = volumes_
-                .emplace(key,
-                         Volume{make_balancer(settings_.balance), BlockCache(settings_.cache_bytes), {}, 0, {}})
+                .emplace(key, Volume{make_balancer(settings_.balance, method_),
+                                     BlockCache(settings_.cache_bytes),
+                                     {},
+                                     0,
+                                     {},
+                                     {},
+                                     0})
                 .first;
   return known->second;
 }
@@ -103,8 +122,10 @@ void Rebalancer::expect(std::uint64_t client, const std::function<volume::Render
   const volume::RenderRequest& request = expected.request.emplace(decode());
   const BrickStore& bricks = renderer_.bricks(client, request);
   const TexelBox lattice = bricks.lattice().box();
-  expected.boxes = volume::boxes(renderer_.partition(client, request), bricks.description());
   expected.volume = &volume_of({client, request.volume});
+  expected.due = is_due(*expected.volume, request);
+  if (!expected.due) return;
+  expected.boxes = volume::boxes(renderer_.partition(client, request), bricks.description());
   BlockCosts& costs = expected.costs.emplace(lattice, cost_edge(lattice));
   volume::add_expected_samples(bricks, request, costs);
   std::size_t most = 0;
@@ -153,6 +174,8 @@ volume::RenderRequest Rebalancer::before_image(std::uint64_t client,
   const bool agreed = all_agree(communicator_, trouble == nullptr);
   if (trouble) std::rethrow_exception(trouble);
   if (!agreed) return std::move(*expected.request);  // another rank refuses it
+  ++expected.volume->images_since;
+  if (!expected.due) return std::move(*expected.request);
 
   gather_costs(expected);
   const volume::RenderRequest& request = *expected.request;
@@ -162,12 +185,15 @@ volume::RenderRequest Rebalancer::before_image(std::uint64_t client,
     const Partition next = volume.balancer->decide({now, expected.costs->lattice(), volume.work,
                                                     *expected.costs, volume.ms_per_block, volume.most_blocks});
     volume.work.clear();  // learned from
+    volume.images_since = 0;
+    if (settings_.balance == Balance::off) volume.cut_for = appearance(request);
     if (next != now) move({client, request.volume}, volume, request, next);
   } catch (const RankLost&) {
     throw;
   } catch (const std::bad_alloc&) {
     communicator_.abandon(
-        "no memory is left to take over blocks of another rank: use more nodes, or --balance off");
+        "no memory is left to take over blocks of another rank: use more nodes, or --balance off --partition "
+        "blocks");
   } catch (const std::exception& error) {
     communicator_.abandon(error.what());
   }
@@ -197,7 +223,7 @@ void Rebalancer::move(VolumeKey key, Volume& volume, const volume::RenderRequest
   const BrickStore& bricks = renderer_.bricks(key.client, request);
   const volume::VolumeDescription& description = bricks.description();
   const Partition& now = renderer_.partition(key.client, request);
-  for (std::size_t i = 0; i < now.splits.size(); ++i) figures.planes += now.splits[i].cut != next.splits[i].cut;
+  for (std::size_t i = 0; i < now.splits.size(); ++i) figures.planes += !(now.splits[i] == next.splits[i]);
   const auto before = volume::boxes(now, description), after = volume::boxes(next, description);
   const std::size_t most_moved = most_blocks_moved(bricks.lattice().box(), before, after);
   std::map<BlockPlace, std::vector<std::byte>> received;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "compositor/balance/block_cache.h"
 #include "compositor/exchange/communicator.h"
 #include "compositor/service/rank_renderer.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 
@@ -41,7 +43,9 @@ struct BalanceSettings {
 
 class Rebalancer {
  public:
-  Rebalancer(Communicator& communicator, RankRenderer& renderer, BalanceSettings settings);
+  /// Of volumes that all ranks together hold one copy of.
+  Rebalancer(Communicator& communicator, RankRenderer& renderer, BalanceSettings settings,
+             volume::PartitionMethod method = volume::PartitionMethod::blocks);
 
   /// Collective, before an image is rendered. Returns what `decode` does; what it throws, or what is wrong
   /// with the request here, is thrown once all ranks have been told, and then nothing has moved anywhere. What
@@ -58,16 +62,30 @@ class Rebalancer {
   void forget_client(std::uint64_t client);
 
  private:
+  /// Of a request, what its blocks' costs depend on, but for the camera.
+  struct Appearance {
+    volume::Operator op = volume::Operator::over;
+    volume::Classification classification;
+    std::vector<volume::Surface> surfaces;
+    std::vector<volume::HalfSpace> clip_planes;
+    volume::Box region;
+
+    bool operator==(const Appearance&) const = default;
+  };
   struct Volume {
     std::unique_ptr<Balancer> balancer;
     BlockCache given_away;
     std::vector<RankWork> work;
     double ms_per_block = 0;
     std::vector<std::size_t> most_blocks;  ///< by rank; empty: to be asked for
+    std::optional<Appearance> cut_for;     ///< what was shown when its partition was last looked at
+    int images_since = 0;
   };
 
   struct Expected;
   struct Traffic;
+  static Appearance appearance(const volume::RenderRequest& request);
+  bool is_due(const Volume& volume, const volume::RenderRequest& request) const;
 
   Volume& volume_of(VolumeKey key);
   void expect(std::uint64_t client, const std::function<volume::RenderRequest()>& decode, Expected& expected);
@@ -85,6 +103,7 @@ class Rebalancer {
   Communicator& communicator_;
   RankRenderer& renderer_;
   BalanceSettings settings_;
+  volume::PartitionMethod method_;
   std::map<VolumeKey, Volume> volumes_;
 };
 

@@ -47,11 +47,11 @@ struct RankRenderer::Volume {
   std::string bricks_path;   ///< of that rank's
   bool bricks_read = false;  ///< as they are now
 
-  Volume(const VolumeDescription& description, int rank, const Arrangement& arranged,
+  Volume(const VolumeDescription& description, int rank, const Arrangement& arranged, PartitionMethod method,
          const BrickRendererFactory& make_renderer)
       : arrangement(arranged),
         place(arrangement.place(rank)),
-        tree(description, arrangement.members()),
+        tree(description, initial_partition(description, arrangement.members(), method)),
         bricks(description, tree.box(place.member)),
         renderer(make_renderer(bricks)),
         version(description.version),
@@ -238,7 +238,8 @@ void RankRenderer::begin(std::uint64_t client, const VolumeDescription& descript
   // The old one goes first: two versions of a large volume need not fit side by side.
   volumes_.erase(key);
   refusing([&] {
-    volumes_.emplace(key, std::make_unique<Volume>(description, rank_, arranged(description), make_renderer_));
+    volumes_.emplace(key, std::make_unique<Volume>(description, rank_, arranged(description), sort_.partition,
+                                                   make_renderer_));
   });
 }
 

@@ -64,6 +64,21 @@ bool set_sort(SortSettings& settings, std::string_view name) {
   return false;
 }
 
+bool set_partition(SortSettings& settings, std::string_view name) {
+  using volume::PartitionMethod;
+  constexpr std::array<std::pair<std::string_view, PartitionMethod>, 4> names{
+      {{"auto", PartitionMethod::cost},
+       {"blocks", PartitionMethod::blocks},
+       {"factors", PartitionMethod::factors},
+       {"cost", PartitionMethod::cost}}};
+  for (const auto& [known, method] : names) {
+    if (known != name) continue;
+    settings.partition = method;
+    return true;
+  }
+  return false;
+}
+
 Arrangement::Arrangement(const SortSettings& settings, const std::vector<int>& machines, std::uint64_t bytes)
     : places_(machines.size()), ranks_(machines.size()) {
   const auto by_machine = equal_machines(machines);

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "volume/partition.h"
+
 namespace understudy::compositor {
 
 enum class Sort : std::uint8_t {
@@ -27,10 +29,14 @@ struct SortSettings {
   std::uint64_t bytes_of_machine = 0;
   /// Of smaller volumes each rank keeps its own bricks: whoever shares them holds a descriptor open for each.
   std::uint64_t least_shared_bytes = std::uint64_t(1) << 20;
+  /// How the members of a group divide their copy. By cost only where there is one group (Rebalancer).
+  volume::PartitionMethod partition = volume::PartitionMethod::blocks;
 };
 
 /// "auto", "first", "last" or "hybrid". False, with `settings` unchanged, for any other.
 bool set_sort(SortSettings& settings, std::string_view name);
+/// "auto" (by cost), "blocks", "factors" or "cost", likewise.
+bool set_partition(SortSettings& settings, std::string_view name);
 
 /// Where ranks stand while they show one volume.
 class Arrangement {

@@ -103,6 +103,28 @@ TEST_F(NodeGroupSort, ShowsTheImagesOfOneProcess) {
     }
 }
 
+TEST_F(NodeGroupSort, ShowsTheImagesOfOneProcessWhereverTheVolumeIsCut) {
+  using volume::PartitionMethod;
+  for (const PartitionMethod method : {PartitionMethod::factors, PartitionMethod::cost})
+    for (const int ranks : {3, 6}) {
+      const Group& group =
+          start(ranks, limits::stall_patience, {}, drawn_first, {.sort = Sort::last, .partition = method});
+      const auto linked = connect(), embedded = embedded_service();
+      double worst = 0;
+      for (const TexelType type : {TexelType::u8, TexelType::rgba8}) {
+        Texture texture = some_texture(1 + std::uint64_t(type), type);
+        upload(*linked, texture);
+        upload(*embedded, texture);
+        for (const Operator op : {Operator::over, Operator::max, Operator::over, Operator::min}) {
+          const volume::RenderRequest request = some_request(texture, op);
+          worst = std::max(worst, largest_difference(image_of(*linked, request), image_of(*embedded, request)));
+        }
+      }
+      EXPECT_LE(worst, 1e-5) << int(method) << ", " << ranks << " ranks";
+      dismiss(group);
+    }
+}
+
 TEST_F(NodeGroupSort, SortFirstTakesTheSamplesOfOneRankAndMovesNoPixelBetweenThem) {
   const Texture texture = some_texture();
   const auto embedded = embedded_service();

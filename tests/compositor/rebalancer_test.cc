@@ -59,10 +59,11 @@ std::vector<std::byte> texels_of(const Texture& texture, const volume::TexelBox&
 /// that happens is the same in every run.
 class Rank {
  public:
-  Rank(Communicator& communicator, const BalanceSettings& settings)
+  Rank(Communicator& communicator, const BalanceSettings& settings,
+       volume::PartitionMethod method = volume::PartitionMethod::blocks)
       : communicator_(communicator),
         renderer_(communicator.rank(), communicator.size()),
-        rebalancer_(communicator, renderer_, settings) {}
+        rebalancer_(communicator, renderer_, settings, method) {}
 
   void upload(const Texture& texture) {
     const volume::VolumeDescription& d = texture.description;
@@ -192,6 +193,49 @@ TEST(Rebalancer, ImagesStayTheSameWhileBlocksTravelAndTexelsChange) {
       EXPECT_GT(figures.moves, 0);
       EXPECT_GT(figures.blocks, 0U);
     }
+}
+
+/// The part of the field at `place` alone is seen, under another table for each.
+volume::RenderRequest showing(const Texture& texture, int drawn, double place) {
+  volume::RenderRequest request = request_of(texture, drawn);
+  volume::TransferFunction table;
+  for (int i = 0; i < 256; ++i) {
+    const bool seen = std::abs(i / 255.0 - place) < 0.1;
+    table.entries.push_back(seen ? volume::Rgba{0.1F, 0.05F, 0.02F, 0.1F} : volume::Rgba{});
+  }
+  request.classification = table;
+  return request;
+}
+
+TEST(Rebalancer, CutsAVolumeAnewForWhatIsVisibleOfIt) {
+  constexpr int ranks = 5;
+  Figures figures;
+  double worst = 0;
+  std::vector<int> moves_after;
+  run_ranks(ranks, [&](Communicator& communicator) {
+    volume::VolumeDescription description = volume::testing::describe({73, 61, 49}, TexelType::u8);
+    description.id = 7;
+    Texture texture{description, {}};
+    for (int z = 0; z < 49; ++z)
+      for (int y = 0; y < 61; ++y)
+        for (int x = 0; x < 73; ++x) texture.texels.push_back(std::byte((x + y + z) * 255 / (73 + 61 + 49)));
+    Rank rank(communicator, figures.settings(Balance::off), volume::PartitionMethod::cost);
+    rank.upload(texture);
+    for (int drawn = 0; drawn < 24; ++drawn) {
+      // A table is kept for six images.
+      const volume::RenderRequest request = showing(texture, drawn, drawn / 6 % 2 == 0 ? 0.2 : 0.8);
+      const volume::Image image = rank.image(request, 1);
+      if (communicator.rank() != 0) continue;
+      worst = std::max(worst, image_by_one(texture, request, image));
+      moves_after.push_back(figures.moves);
+    }
+  });
+  EXPECT_LE(worst, 1e-5);
+  EXPECT_GT(moves_after[0], 0) << "cut before the first image";
+  EXPECT_GT(moves_after[6], moves_after[5]) << "cut for another table";
+  EXPECT_EQ(moves_after[5], moves_after[1]) << "not cut where nothing is new";
+  std::printf("%d moves, %zu blocks travelled, at most %.2g apart\n", figures.moves.load(),
+              figures.blocks.load(), worst);
 }
 
 TEST(Rebalancer, AllRanksCutAlikeAndBlocksComeBackFromCaches) {

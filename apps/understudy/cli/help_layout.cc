@@ -24,7 +24,7 @@ const Heading headings[] = {
     {"The file's scalars", {"volume-size", "type", "big-endian", "spacing", "texels", "range"}},
     {"Nodes",
      {"nodes", "hostfile", "connect", "secret-file", "key", "server-key", "plain", "quality", "backend",
-      "gpu-memory", "sort", "balance", "exchange", "pixels", "gather", "overlap", "tiles"}},
+      "gpu-memory", "sort", "partition", "balance", "exchange", "pixels", "gather", "overlap", "tiles"}},
     {"The viewer",
      {"injection", "remote", "server-opengl", "sandbox", "chain", "frame-latency", "require", "trace"}},
     {"Checks and figures",

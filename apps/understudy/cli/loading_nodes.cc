@@ -8,6 +8,7 @@
 
 #include "apps/understudy/cli/balance_option.h"
 #include "apps/understudy/cli/node_options.h"
+#include "apps/understudy/cli/partition_option.h"
 #include "apps/understudy/cli/sort_option.h"
 #include "apps/understudy/hosts/placement.h"
 #include "apps/understudy/launch/backend_option.h"
@@ -47,6 +48,7 @@ void add_loading_nodes(CLI::App& subcommand, LoadingNodes& arguments) {
   add_backend_option(subcommand, arguments.choices.backend);
   add_gpu_memory_option(subcommand, arguments.choices.gpu_memory);
   add_sort_option(subcommand, arguments.choices.sort);
+  add_partition_option(subcommand, arguments.choices.partition);
   add_balance_option(subcommand, arguments.choices.balance);
   add_exchange_options(subcommand, arguments.choices);
 }

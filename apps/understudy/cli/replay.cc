@@ -10,6 +10,7 @@
 
 #include "apps/understudy/cli/balance_option.h"
 #include "apps/understudy/cli/node_options.h"
+#include "apps/understudy/cli/partition_option.h"
 #include "apps/understudy/cli/play.h"
 #include "apps/understudy/cli/run.h"
 #include "apps/understudy/cli/sort_option.h"
@@ -67,6 +68,7 @@ void add_replay(CLI::App& app, std::function<int()>& chosen) {
   add_backend_option(*subcommand, arguments->backend);
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);
   add_sort_option(*subcommand, arguments->sort);
+  add_partition_option(*subcommand, arguments->partition);
   add_balance_option(*subcommand, arguments->balance);
   add_hostfile_option(*subcommand, arguments->hostfile);
   add_connection_options(*subcommand, arguments->connection);

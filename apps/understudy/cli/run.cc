@@ -11,6 +11,7 @@
 #include "apps/understudy/cli/balance_option.h"
 #include "apps/understudy/cli/node_options.h"
 #include "apps/understudy/cli/output_file.h"
+#include "apps/understudy/cli/partition_option.h"
 #include "apps/understudy/cli/sort_option.h"
 #include "apps/understudy/cli/trace_option.h"
 #include "apps/understudy/launch/backend_option.h"
@@ -84,6 +85,7 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
   add_backend_option(*subcommand, arguments->backend);
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);
   add_sort_option(*subcommand, arguments->sort);
+  add_partition_option(*subcommand, arguments->partition);
   add_balance_option(*subcommand, arguments->balance);
   add_hostfile_option(*subcommand, arguments->hostfile);
   add_connection_options(*subcommand, arguments->connection);

@@ -15,6 +15,7 @@
 
 #include "apps/understudy/cli/balance_option.h"
 #include "apps/understudy/cli/node_options.h"
+#include "apps/understudy/cli/partition_option.h"
 #include "apps/understudy/cli/sort_option.h"
 #include "apps/understudy/gl_server/gl_server.h"
 #include "apps/understudy/hosts/placement.h"
@@ -172,6 +173,7 @@ void add_group_options(CLI::App& subcommand, ServeArguments& arguments) {
   add_backend_option(subcommand, arguments.choices.backend);
   add_gpu_memory_option(subcommand, arguments.choices.gpu_memory);
   add_sort_option(subcommand, arguments.choices.sort);
+  add_partition_option(subcommand, arguments.choices.partition);
   add_balance_option(subcommand, arguments.choices.balance);
   subcommand
       .add_option("--socket", arguments.socket,

@@ -327,6 +327,7 @@ std::optional<NodeGroupPlan> nodes_of(const RunArguments& arguments, const RunPl
                         .backend = arguments.backend,
                         .gpu_memory = arguments.gpu_memory,
                         .sort = arguments.sort,
+                        .partition = arguments.partition,
                         .balance = arguments.balance}};
 }
 
@@ -340,6 +341,9 @@ void tell_options_without_effect(const RunArguments& arguments, const RunPlan& p
   if (!has_nodes && arguments.sort != "auto")
     say(fmt::format("--sort {} is for nodes of this run (-n N), or give it to understudy serve",
                     arguments.sort));
+  if (!has_nodes && arguments.partition != "auto")
+    say(fmt::format("--partition {} is for nodes of this run (-n N), or give it to understudy serve",
+                    arguments.partition));
   if (!has_nodes && arguments.balance != "off")
     say(fmt::format("--balance {} is for nodes of this run (-n N), or give it to understudy serve",
                     arguments.balance));

@@ -25,6 +25,7 @@ struct RunArguments {
   std::string backend = "cpu";      ///< who casts the nodes' rays
   std::string gpu_memory = "auto";  ///< what that may take of a graphics card, in bytes
   std::string sort = "auto";        ///< what nodes divide
+  std::string partition = "auto";   ///< where nodes that divide a volume cut it
   std::string balance = "off";      ///< who of the nodes gets how much of a volume
   std::filesystem::path hostfile;   ///< where the nodes are; empty: on this machine
   ConnectionPlan connection;        ///< how to get at --connect HOST:PORT

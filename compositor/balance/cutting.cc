@@ -48,8 +48,10 @@ class CuttingBalancer : public Balancer {
       : then_(std::move(then)), settings_(settings) {}
 
   Partition decide(const BalanceInput& input) override {
-    const bool cut_before = std::exchange(cut_, true);
-    return cut_before && then_ ? then_->decide(input) : recut(input);
+    if (cut_ && then_) return then_->decide(input);
+    // A first image may show nothing.
+    cut_ = CostSums(input.costs).within(input.lattice) > 0;
+    return recut(input);
   }
 
  private:
@@ -61,7 +63,7 @@ class CuttingBalancer : public Balancer {
     const double stay = dearest(sums, now);
     const double gain = stay - dearest(sums, then);
     if (!have_room(then, input.most_blocks) || !(gain > settings_.least_gain * stay)) return input.partition;
-    // Before anything was measured the volume is likely to be shown more than once.
+    // Before anything was measured the volume is taken to be shown more than once.
     const auto sample_ms = ms_of_sample(input.work);
     const double move_ms = double(most_blocks_moved(input.lattice, now, then)) * input.ms_per_block;
     return !sample_ms || settings_.horizon * gain * *sample_ms > move_ms ? fair : input.partition;

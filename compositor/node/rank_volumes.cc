@@ -28,7 +28,7 @@ void RankLoop::take_volume(NodeMessage message, const Order& order, Bytes payloa
       const volume::VolumeDescription description = decode_volume(payload);
       mine.filling = VolumeKey{order.client, description.id};
       loads_.forget(*mine.filling);
-      if (rebalancer_) rebalancer_->forget(*mine.filling);
+      if (rebalancer_) rebalancer_->begin(*mine.filling);
       renderer_.begin(order.client, description);
       tell_where_bricks_are(*mine.filling, mine);
       break;

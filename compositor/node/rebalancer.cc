@@ -102,19 +102,29 @@ struct Rebalancer::Expected {
   std::vector<std::size_t> most_blocks;  ///< room for all ranks' answers
 };
 
+Rebalancer::Volume Rebalancer::new_volume() const {
+  return {.balancer = make_balancer(settings_.balance, method_),
+          .given_away = BlockCache(settings_.cache_bytes),
+          .work = {},
+          .ms_per_block = 0,
+          .most_blocks = {},
+          .cut_for = {}};
+}
+
 Rebalancer::Volume& Rebalancer::volume_of(VolumeKey key) {
   auto known = volumes_.find(key);
-  if (known == volumes_.end())
-    known = volumes_
-                .emplace(key, Volume{make_balancer(settings_.balance, method_),
-                                     BlockCache(settings_.cache_bytes),
-                                     {},
-                                     0,
-                                     {},
-                                     {},
-                                     0})
-                .first;
+  if (known == volumes_.end()) known = volumes_.emplace(key, new_volume()).first;
   return known->second;
+}
+
+void Rebalancer::begin(VolumeKey key) {
+  const auto known = volumes_.find(key);
+  if (known == volumes_.end()) return;
+  Volume volume = new_volume();
+  // Cutting goes by all ranks' samples together, whatever their boxes were.
+  if (method_ == volume::PartitionMethod::cost) volume.work = std::move(known->second.work);
+  volume.ms_per_block = known->second.ms_per_block;
+  known->second = std::move(volume);
 }
 
 void Rebalancer::expect(std::uint64_t client, const std::function<volume::RenderRequest()>& decode,

@@ -58,6 +58,9 @@ class Rebalancer {
   /// Other texels have come for these boxes of a volume that is complete.
   void texels_changed(VolumeKey key, const volume::VolumeDescription& description,
                       std::span<const volume::TexelBox> boxes);
+  /// A volume begins anew. What images and moves of the one before took stays known: an application may upload
+  /// it whole for every frame.
+  void begin(VolumeKey key);
   void forget(VolumeKey key) { volumes_.erase(key); }
   void forget_client(std::uint64_t client);
 
@@ -87,6 +90,7 @@ class Rebalancer {
   static Appearance appearance(const volume::RenderRequest& request);
   bool is_due(const Volume& volume, const volume::RenderRequest& request) const;
 
+  Volume new_volume() const;
   Volume& volume_of(VolumeKey key);
   void expect(std::uint64_t client, const std::function<volume::RenderRequest()>& decode, Expected& expected);
   void gather_costs(Expected& expected);

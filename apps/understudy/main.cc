@@ -11,8 +11,10 @@
 
 #include "apps/understudy/cli/compare.h"
 #include "apps/understudy/cli/completion.h"
+#include "apps/understudy/cli/configured_words.h"
 #include "apps/understudy/cli/doctor.h"
 #include "apps/understudy/cli/help_layout.h"
+#include "apps/understudy/cli/install_launcher.h"
 #include "apps/understudy/cli/key.h"
 #include "apps/understudy/cli/play.h"
 #include "apps/understudy/cli/print.h"
@@ -45,6 +47,8 @@ int main(int argc, char** argv) try {
   app.set_version_flag("--version", launcher::version_text);
   std::function<int()> chosen;
   launcher::add_run(app, line.viewer, chosen);
+  launcher::add_config(app, chosen);
+  launcher::add_install_launcher(app, line.viewer, chosen);
   launcher::add_replay(app, chosen);
   launcher::add_play(app, chosen);
   launcher::add_print(app, chosen);
@@ -63,13 +67,20 @@ int main(int argc, char** argv) try {
   launcher::add_completion(app, chosen);
   launcher::add_manual(app, chosen);
   launcher::group_options(app);
+  launcher::CommandLine configured;
+  try {
+    configured = launcher::with_configuration(app, line);
+  } catch (const std::runtime_error& error) {
+    understudy::logging::log(understudy::logging::Level::error, "{}", error.what());
+    return launcher::usage_error;
+  }
   try {
     // The library takes them last to first, and without the program's name.
-    app.parse(std::vector<std::string>(line.own.rbegin(), line.own.rend() - 1));
+    app.parse(std::vector<std::string>(configured.own.rbegin(), configured.own.rend() - 1));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     std::fprintf(stderr, "%s\n",
-                 launcher::usage_error_text(app, std::span(line.own).subspan(1), error).c_str());
+                 launcher::usage_error_text(app, std::span(configured.own).subspan(1), error).c_str());
     return launcher::usage_error;
   }
   return chosen();

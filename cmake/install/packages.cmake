@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# cpack: understudy_VERSION_ARCHITECTURE.deb and understudy-dev, and archives.
+# cpack: understudy_VERSION_ARCHITECTURE.deb and understudy-dev, the same as .rpm where rpmbuild is, and archives.
 # The module is one version of Python's.
 if(TARGET understudy_python)
   math(EXPR python_after "${Python_VERSION_MINOR} + 1")
@@ -12,6 +12,11 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "OpenGL library that ray-casts a viewer's 
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_GENERATOR "DEB;TZST")
+# For systems that have the libraries' versions of the one that builds it.
+find_program(UNDERSTUDY_RPMBUILD rpmbuild)
+if(UNDERSTUDY_RPMBUILD)
+  list(APPEND CPACK_GENERATOR RPM)
+endif()
 set(CPACK_COMPONENTS_ALL runtime development)
 if(TARGET understudy_python)
   list(APPEND CPACK_COMPONENTS_ALL python)
@@ -40,5 +45,19 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Ray casting of volumes in NumPy arrays, in the process or on render nodes, and\nviewers under Understudy with their reports as objects.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${python_after}), python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS understudy)
+set(CPACK_RPM_COMPONENT_INSTALL ON)
+set(CPACK_RPM_FILE_NAME RPM-DEFAULT)
+set(CPACK_RPM_PACKAGE_LICENSE Apache-2.0)
+set(CPACK_RPM_PACKAGE_AUTOREQ ON)
+set(CPACK_RPM_RUNTIME_PACKAGE_NAME understudy)
+set(CPACK_RPM_RUNTIME_PACKAGE_SUGGESTS openmpi)
+set(CPACK_RPM_DEVELOPMENT_PACKAGE_NAME understudy-devel)
+set(CPACK_RPM_DEVELOPMENT_PACKAGE_REQUIRES "expat-devel, fmt-devel, highway-devel, tbb-devel, json-devel, zlib-devel")
+set(CPACK_RPM_PYTHON_PACKAGE_NAME python3-understudy)
+set(CPACK_RPM_PYTHON_PACKAGE_REQUIRES python3-numpy)
+# Folders that belong to the system.
+set(CPACK_RPM_EXCLUDE_FROM_AUTO_FILELIST_ADDITION
+  /usr/share/man /usr/share/man/man1 /usr/share/bash-completion /usr/share/bash-completion/completions /usr/share/zsh
+  /usr/share/fish /usr/lib/cmake /usr/lib/pkgconfig /usr/lib/python3 /usr/lib/python3/dist-packages)
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/debian_files.cmake)
 include(CPack)

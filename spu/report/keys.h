@@ -11,6 +11,7 @@ constexpr const char* frames_substituted = "frames_substituted";
 constexpr const char* frames_left = "frames_left";
 constexpr const char* nodes = "nodes";
 constexpr const char* backends = "backends";  ///< of nodes of this run: who cast the rays, and why
+constexpr const char* origin = "origin";      ///< of `understudy run`: version, command, machine, time
 constexpr const char* remote = "remote";      ///< whether the viewer's whole stream was drawn elsewhere
 constexpr const char* images_behind = "images_behind";  ///< --frame-latency: shown one frame late
 constexpr const char* windows_asked = "windows_asked";  ///< how often a window was asked to draw again for that

@@ -7,10 +7,10 @@
 #include <memory>
 #include <string>
 
-#include "apps/understudy/cli/version.h"
 #include "apps/understudy/option_table/completion.h"
 #include "apps/understudy/option_table/manual_page.h"
 #include "apps/understudy/option_table/option_table.h"
+#include "apps/understudy/processes/build.h"
 
 namespace understudy::launcher {
 

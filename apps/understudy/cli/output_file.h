@@ -12,7 +12,4 @@ namespace understudy::launcher {
 /// (".png"); empty: any name. Nothing is changed.
 CLI::Validator can_be_written(const std::string& ending = {});
 
-/// Why `path` cannot be written; empty: it can.
-std::string obstacle_to_writing(const std::string& path);
-
 }  // namespace understudy::launcher

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "apps/understudy/file_scene/file_scene.h"
+#include "apps/understudy/processes/origin.h"
 #include "apps/understudy/study/median.h"
 
 namespace understudy::launcher {
@@ -110,6 +111,7 @@ void write_render_report(const std::string& path, const RenderFigures& figures) 
                        {"processors", counts.processor_ms},
                        {"composite", counts.composite_ms}};
   report["frames_ms"] = figures.frame_ms;
+  report["origin"] = origin();
   report["samples"] = counts.samples;
   report["samples_taken"] = counts.samples_taken;
   report["rays"] = counts.rays;
@@ -129,7 +131,7 @@ void write_render_report(const std::string& path, const RenderFigures& figures) 
                                {"image_processor_ms", rank.image_processor_ms},
                                {"samples_taken", rank.image_samples}});
   std::ofstream file(path);
-  file << report.dump(2) << '\n';
+  file << report.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   file.close();
   if (!file)
     throw std::runtime_error(

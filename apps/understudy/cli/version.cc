@@ -3,15 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "apps/understudy/processes/build.h"
 #include "apps/understudy/processes/installation.h"
-#include "generated_commit.h"
 #include "volume/raycast/ray_caster.h"
 
 namespace understudy::launcher {
-
-std::string version_number() {
-  return UNDERSTUDY_VERSION;
-}
 
 std::string version_text() {
   const Installation here = this_installation();
@@ -23,8 +19,7 @@ std::string version_text() {
       "  libraries        {}\n"
       "  render nodes     {}\n"
       "`understudy doctor` tells what works on this machine.",
-      UNDERSTUDY_VERSION, UNDERSTUDY_COMMIT, UNDERSTUDY_COMPILER, volume::instruction_set(),
-      here.libraries.string(), nodes);
+      version_number(), commit(), compiler(), volume::instruction_set(), here.libraries.string(), nodes);
 }
 
 }  // namespace understudy::launcher

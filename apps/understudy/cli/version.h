@@ -6,8 +6,6 @@
 
 namespace understudy::launcher {
 
-/// As 0.1.0.
-std::string version_number();
 /// A few lines, for people who report what went wrong.
 std::string version_text();
 

@@ -63,6 +63,7 @@ Finding tried(const Way& way, const std::filesystem::path& volume, const std::fi
         std::string("64"), std::string("64")})
     command.arguments.push_back(word);
   command.environment = current_environment();
+  command.environment["UNDERSTUDY_CONFIG"] = "";
   command.output = log;
   command.own_group = true;
   const auto start = std::chrono::steady_clock::now();

@@ -13,6 +13,7 @@ namespace {
 constexpr auto of_libraries = std::to_array<const char*>({
     "LD_LIBRARY_PATH",
     "UNDERSTUDY_LOG",
+    "UNDERSTUDY_PLUGINS",
     "XDG_RUNTIME_DIR",
     // which driver, and how much of it
     "CUDA_VISIBLE_DEVICES",

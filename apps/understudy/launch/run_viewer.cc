@@ -29,6 +29,8 @@
 #include "apps/understudy/processes/child_process.h"
 #include "apps/understudy/processes/environment.h"
 #include "apps/understudy/processes/installation.h"
+#include "apps/understudy/processes/origin.h"
+#include "apps/understudy/processes/output_obstacle.h"
 #include "apps/understudy/processes/signal_inbox.h"
 #include "compositor/exchange/settings.h"
 #include "compositor/logging/log.h"
@@ -209,9 +211,11 @@ Ending wait_for(ChildProcess& viewer, NodeGroup* nodes, SignalInbox& inbox) {
 std::string with_the_launchers(const std::string& report, const std::vector<std::string>& backends,
                                const nlohmann::ordered_json& connection) {
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(report);
+  json[spu::report_key::origin] = origin();
   json[spu::report_key::backends] = backends;
   json[spu::report_key::connection] = connection;
-  return json.dump(1, ' ') + "\n";
+  // A command's words are whatever bytes the user's file names have.
+  return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 void tell_what_happened(const spu::Options& options, const RunFolder& folder, const RunFigures& figures) {
@@ -288,6 +292,14 @@ std::optional<ConnectionPlan> checked_connection(const RunArguments& arguments, 
   return connection;
 }
 
+/// Options that come by the environment have not been checked. Throws CannotRun.
+void check_outputs(const spu::Options& options) {
+  const std::string report = options.report.empty() ? "" : obstacle_to_writing(options.report);
+  if (!report.empty()) throw CannotRun("--report: " + report);
+  const std::string frames = options.save_frames.empty() ? "" : obstacle_to_writing_into(options.save_frames);
+  if (!frames.empty()) throw CannotRun("--save-frames: " + frames);
+}
+
 /// Throws CannotRun.
 RunPlan plan_of(const RunArguments& arguments) {
   RunPlan plan{.options = options_of(arguments)};
@@ -309,6 +321,7 @@ RunPlan plan_of(const RunArguments& arguments) {
   } catch (const std::runtime_error& error) {
     throw CannotRun(error.what());
   }
+  check_outputs(options);
   return plan;
 }
 

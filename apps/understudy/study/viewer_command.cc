@@ -64,6 +64,7 @@ std::string output_of(std::vector<std::string> arguments, const fs::path& log) {
   fs::remove(log);  // children write at its end
   Environment environment = current_environment();
   environment["LIBGL_ALWAYS_SOFTWARE"] = std::string("1");
+  environment["UNDERSTUDY_CONFIG"] = "";  // the user's defaults would be measured
   std::optional<Ending> ending;
   try {
     ChildProcess child({std::move(arguments), std::move(environment), log, true});

@@ -351,6 +351,52 @@ TEST_F(UnderstudyRun, AReportThatCannotBeWrittenIsToldBeforeTheViewerStarts) {
   EXPECT_FALSE(fs::exists(mark));
 }
 
+TEST_F(UnderstudyRun, WhatTheEnvironmentAsksToWriteIsTriedBeforeTheViewerStarts) {
+  const fs::path mark = folder_ / "started";
+  std::ofstream(folder_ / "file") << "";
+  for (const auto& [variable, path] : {std::pair{"UNDERSTUDY_REPORT", folder_ / "missing" / "r.json"},
+                                       std::pair{"UNDERSTUDY_SAVE_FRAMES", folder_ / "file" / "frames"}}) {
+    setenv(variable, path.c_str(), 1);
+    const Result result = understudy("run -- touch " + mark.string());
+    unsetenv(variable);
+    EXPECT_EQ(result.status, 2) << variable;
+    EXPECT_THAT(result.output, HasSubstr(path.string() + " cannot be ")) << variable;
+    EXPECT_FALSE(fs::exists(mark)) << variable;
+  }
+}
+
+TEST_F(UnderstudyRun, TheConfigurationFileComesBehindTheEnvironmentAndTheCommandLine) {
+  const fs::path file = folder_ / "understudy.toml";
+  std::ofstream(file) << "error = \"3/255\"\n[sh]\nsave-frames = \"" << (folder_ / "frames").string() << "\"\n";
+  setenv("UNDERSTUDY_CONFIG", file.c_str(), 1);
+  const std::string viewer = " -- sh -c 'echo error $UNDERSTUDY_ERROR frames $UNDERSTUDY_SAVE_FRAMES'";
+  EXPECT_THAT(understudy("run" + viewer).output,
+              HasSubstr("error 3/255 frames " + (folder_ / "frames").string() + "\n"));
+  EXPECT_THAT(understudy("run --error 5/255" + viewer).output, HasSubstr("error 5/255 frames /"));
+  setenv("UNDERSTUDY_ERROR", "4/255", 1);
+  EXPECT_THAT(understudy("run" + viewer).output, HasSubstr("error 4/255 frames /"));
+  EXPECT_THAT(understudy("config sh").output,
+              ::testing::AllOf(HasSubstr("UNDERSTUDY_ERROR"), HasSubstr("line 3, [sh]")));
+  unsetenv("UNDERSTUDY_ERROR");
+  std::ofstream(file) << "eror = 1\n";
+  const Result wrong = understudy("run -- true");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.output,
+              HasSubstr("understudy.toml, line 1: `understudy run` has no option --eror; did you mean "));
+  for (const char* refused : {"error = \"much\"\n", "explain = 3\n"}) {
+    std::ofstream(file) << refused;
+    EXPECT_EQ(understudy("run -- true").status, 2) << refused;
+  }
+  std::ofstream(file) << "nodes = 2\nspeed-guard = false\nexplain = false\n";
+  const std::string figures = " -- sh -c 'echo guard $UNDERSTUDY_SPEED_GUARD explain $UNDERSTUDY_EXPLAIN.'";
+  EXPECT_THAT(understudy("run -n 0" + figures).output, HasSubstr("guard off explain .\n"));
+  setenv("UNDERSTUDY_NODES", "0", 1);
+  EXPECT_THAT(understudy("config").output,
+              ::testing::AllOf(HasSubstr("UNDERSTUDY_NODES"), Not(HasSubstr("line 1"))));
+  unsetenv("UNDERSTUDY_NODES");
+  unsetenv("UNDERSTUDY_CONFIG");
+}
+
 TEST(UnderstudyCompare, PrintsItsThreeLinesAndTellsWhatItCannotRead) {
   const fs::path folder =
       fs::temp_directory_path() / ("understudy-compare-command-" + std::to_string(getpid()));

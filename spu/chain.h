@@ -180,8 +180,11 @@ class Chain {
   /// The unit of type T; null when the chain has none.
   template <class T>
   T* find() const {
+    return static_cast<T*>(find(&T::tag));
+  }
+  Unit* find(const char* tag) const {
     for (const Place& place : units_) {
-      if (place.tag == &T::tag) return static_cast<T*>(place.unit.get());
+      if (place.tag == tag) return place.unit.get();
     }
     return nullptr;
   }

@@ -39,7 +39,7 @@ class ChainTextReader {
   UnitSetting unit() {
     UnitSetting unit;
     unit.where = where();
-    unit.name = present_unit(name("a unit's name"));
+    unit.name = name_or_file();
     skip_space();
     if (at_end() || peek() != '(') return unit;
     const std::string opened = where();
@@ -59,6 +59,20 @@ class ChainTextReader {
     if (at_end()) throw ChainError(opened, "this parenthesis is not closed; put ')' behind the last option");
     ++position_;
     return unit;
+  }
+
+  std::string name_or_file() {
+    const std::size_t start = position_;
+    if (!at_end() && peek() == '"') {
+      std::string file = quoted();
+      if (file.find('/') != std::string::npos) return file;
+      position_ = start;
+      fail("between double quotes, a unit is the path of a file, with a slash in it");
+    }
+    const std::string file = plain();
+    if (file.find('/') != std::string::npos) return file;
+    position_ = start;
+    return present_unit(name("a unit's name"));
   }
 
   OptionSetting option() {
@@ -144,7 +158,7 @@ ChainSettings parse_chain(std::string_view text) {
 std::string chain_text(const ChainSettings& chain) {
   std::string text;
   for (const UnitSetting& unit : chain) {
-    text += (text.empty() ? "" : " ") + unit.name;
+    text += (text.empty() ? "" : " ") + value_text(unit.name);
     if (unit.options.empty()) continue;
     std::string options;
     for (const OptionSetting& option : unit.options) {

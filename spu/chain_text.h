@@ -2,7 +2,8 @@
 // A chain as its user writes it: unit names in order, each with its options in parentheses.
 //
 //   chain  = { unit }
-//   unit   = name [ "(" [ option { "," option } ] ")" ]
+//   unit   = ( name | file ) [ "(" [ option { "," option } ] ")" ]
+//   file   = a path with a slash in it, as a value; a unit that is built elsewhere
 //   option = name [ "=" value ]                           without a value: "on"
 //   value  = characters other than space , ( ) " or, between double quotes, any; there \" is " and \\ is \.
 //

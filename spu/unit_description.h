@@ -12,9 +12,13 @@ namespace understudy::spu {
 
 class RenderSession;
 
+struct UnitDescription;
+struct UnitPlugin;
+
 /// What a unit gets when it is made.
 struct UnitPlace {
   Chain& chain;
+  const UnitDescription& description;
   const OptionValues& options;
   std::shared_ptr<RenderSession> session;  ///< of the process
 };
@@ -26,7 +30,7 @@ enum class UnitPosition {
   last,        ///< the end of every chain
 };
 
-/// A constant with static storage; spu/registry/assemble.cc lists them all.
+/// A constant with static storage, which spu/registry/assemble.cc lists, or what a loaded library says.
 struct UnitDescription {
   const char* name;
   const char* help;  ///< one line
@@ -37,6 +41,7 @@ struct UnitDescription {
   const char* or_leads_to = nullptr;  ///< or this one
   /// Null for what is no unit but the driver.
   std::unique_ptr<Unit> (*make)(const UnitPlace& place) = nullptr;
+  const UnitPlugin* plugin = nullptr;  ///< of a unit in a library that was loaded
 };
 
 }  // namespace understudy::spu

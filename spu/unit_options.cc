@@ -119,6 +119,10 @@ std::string nearest_name(std::string_view wrong, const std::vector<std::string>&
   return best;
 }
 
+bool is_value_of(const UnitOption& option, const std::string& text) {
+  return read_value(option, text).has_value();
+}
+
 OptionValues option_values(const UnitSetting& unit, std::span<const UnitOption> options) {
   OptionValues values;
   for (const UnitOption& option : options) values.set(option.name, *read_value(option, option.fallback));

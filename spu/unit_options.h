@@ -63,6 +63,9 @@ class OptionValues {
   std::map<std::string, Value, std::less<>> values_;
 };
 
+/// Whether the option takes `text`.
+bool is_value_of(const UnitOption& option, const std::string& text);
+
 /// Reads what `unit` says about its options against those there are. Throws ChainError.
 OptionValues option_values(const UnitSetting& unit, std::span<const UnitOption> options);
 

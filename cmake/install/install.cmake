@@ -68,6 +68,7 @@ install_component(raycast
   HEADERS volume/brick/brick_store.h volume/brick/histogram.h volume/file/file_error.h volume/file/volume_file.h
     volume/frame_counts.h volume/image.h volume/matrix.h volume/orbit_camera.h volume/raycast/ray_caster.h
     volume/reference/pixel_integral.h volume/request.h volume/transfer_control_points.h)
+install_component(plugin TARGETS plugin understudy_unit_plugin HEADERS spu/plugin/unit_plugin.h)
 set(compositor_headers compositor/blend.h compositor/rendered.h compositor/service.h compositor/exchange/exchange.h
   compositor/exchange/thread_communicator.h compositor/node/node.h)
 if(MPI_CXX_FOUND)

@@ -7,6 +7,7 @@
 Files written (README.md in this folder says who uses which):
 
     table.h           DispatchTable: one function pointer a command
+    signature.h       a number that is another for other commands
     call_id.h, .cc    CallId: one number a command, in alphabetical order, and the way between number, name and slot
     call_shape.h, .cc   CallShape: types, names and extents of a command's arguments; stable ids; names of enumerants
     call_words.h, .cc   AsWords<Handler> and invoke: a call as words, and the call made from words
@@ -21,6 +22,7 @@ from its header, which the registry's own generator writes. Nothing generated is
 """
 
 import argparse
+import hashlib
 from pathlib import Path
 
 import shapes
@@ -81,6 +83,24 @@ namespace understudy::spu {{
 struct DispatchTable {{
 {members}
 }};
+
+}}  // namespace understudy::spu
+"""
+
+
+def signature(commands):
+    """Libraries that are built apart share the table by its layout."""
+    declarations = "\n".join(f"{c.result} {c.member}({c.parameter_list})" for c in commands)
+    digest = hashlib.sha256(declarations.encode()).hexdigest()[:16]
+    return f"""\
+#pragma once
+
+#include <cstdint>
+
+namespace understudy::spu {{
+
+/// The same where DispatchTable has the same commands.
+constexpr std::uint64_t dispatch_table_signature = 0x{digest};
 
 }}  // namespace understudy::spu
 """
@@ -333,6 +353,7 @@ def main():
     out = arguments.out
     out.mkdir(parents=True, exist_ok=True)
     write(out / "table.h", table(gl))
+    write(out / "signature.h", signature(gl))
     write(out / "call_id.h", call_id_header(gl))
     write(out / "call_id.cc", call_id_source(gl))
     write(out / "call_shape.h", shapes.shape_header())

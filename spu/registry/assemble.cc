@@ -16,6 +16,7 @@
 #include "spu/pack/pack.h"
 #include "spu/pass/pass.h"
 #include "spu/perf/perf.h"
+#include "spu/plugin/plugin_file.h"
 #include "spu/print/print.h"
 #include "spu/remote/remote.h"
 #include "spu/tiles/tile.h"
@@ -28,13 +29,15 @@
 namespace understudy::spu {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::array units_by_name = {
     &driver_description, &null_description,   &pack_description,  &pass_description,  &perf_description,
     &print_description,  &remote_description, &tile_description,  &tiles_description, &trace_description,
     &track_description,  &unpack_description, &volume_description};
 
 struct PlannedUnit {
-  const UnitDescription* description;
+  UnitDescription description;
   OptionValues options;
 };
 
@@ -46,29 +49,51 @@ ChainSettings settings_of(std::string_view description) {
   return parse_chain(description);
 }
 
-const UnitDescription& find_unit(const UnitSetting& setting, UnitTable units) {
-  const auto found = std::find_if(units.begin(), units.end(),
-                                  [&](const UnitDescription* unit) { return setting.name == unit->name; });
-  if (found != units.end()) return **found;
+/// The file of a unit that is built elsewhere; null: the unit is one of `units`, or there is none.
+std::optional<fs::path> plugin_of(const UnitSetting& setting, UnitTable units) {
+  if (names_plugin_file(setting.name)) return setting.name;
+  if (std::ranges::any_of(units, [&](const UnitDescription* unit) { return setting.name == unit->name; }))
+    return std::nullopt;
+  return find_plugin(setting.name);
+}
+
+UnitDescription find_unit(const UnitSetting& setting, UnitTable units) {
+  for (const UnitDescription* unit : units) {
+    if (setting.name == unit->name) return *unit;
+  }
+  if (const auto file = plugin_of(setting, units)) {
+    try {
+      const UnitDescription plugin = load_plugin(*file);
+      if (!std::ranges::any_of(
+              units, [&](const UnitDescription* unit) { return std::string_view(unit->name) == plugin.name; }))
+        return plugin;
+      throw std::runtime_error(
+          fmt::format("{} has the name of a unit of Understudy's own: {}", file->string(), plugin.name));
+    } catch (const std::runtime_error& error) {
+      throw ChainError(setting.where, error.what());
+    }
+  }
   std::vector<std::string> names;
   for (const UnitDescription* unit : units) names.emplace_back(unit->name);
   const std::string meant = nearest_name(setting.name, names);
   throw ChainError(setting.where,
-                   fmt::format("no unit is named {}{} There are: {}", shown(setting.name),
-                               meant.empty() ? "." : "; did you mean " + meant + "?", fmt::join(names, ", ")));
+                   fmt::format("no unit is named {0}{1} There are: {2}; and {0}.so would be one in a folder of "
+                               "UNDERSTUDY_PLUGINS",
+                               shown(setting.name), meant.empty() ? "." : "; did you mean " + meant + "?",
+                               fmt::join(names, ", ")));
 }
 
 std::vector<PlannedUnit> plan(const ChainSettings& settings, UnitTable units) {
   std::vector<PlannedUnit> planned;
   for (const UnitSetting& setting : settings) {
-    const UnitDescription& unit = find_unit(setting, units);
+    const UnitDescription unit = find_unit(setting, units);
     const auto is_planned = [&](std::string_view name) {
       return std::any_of(planned.begin(), planned.end(),
-                         [&](const PlannedUnit& before) { return name == before.description->name; });
+                         [&](const PlannedUnit& before) { return name == before.description.name; });
     };
-    if (!planned.empty() && planned.back().description->position == UnitPosition::last) {
+    if (!planned.empty() && planned.back().description.position == UnitPosition::last) {
       throw ChainError(setting.where, fmt::format("{} stands behind {}, which must be last; move it before",
-                                                  unit.name, planned.back().description->name));
+                                                  unit.name, planned.back().description.name));
     }
     if (unit.position == UnitPosition::once && is_planned(unit.name)) {
       throw ChainError(setting.where,
@@ -78,21 +103,21 @@ std::vector<PlannedUnit> plan(const ChainSettings& settings, UnitTable units) {
       throw ChainError(setting.where,
                        fmt::format("{0} needs {1} before it; write \"{1} {0}\"", unit.name, unit.needs));
     }
-    planned.push_back({&unit, option_values(setting, unit.options)});
+    planned.push_back({unit, option_values(setting, unit.options)});
   }
   for (std::size_t i = 0; i < planned.size(); ++i) {
-    const char* wanted = planned[i].description->leads_to;
-    const char* otherwise = planned[i].description->or_leads_to;
+    const char* wanted = planned[i].description.leads_to;
+    const char* otherwise = planned[i].description.or_leads_to;
     const auto is_wanted = [&](const PlannedUnit& unit) {
-      const std::string_view name = unit.description->name;
+      const std::string_view name = unit.description.name;
       return name == wanted || (otherwise != nullptr && name == otherwise);
     };
     if (wanted == nullptr || std::any_of(planned.begin() + std::ptrdiff_t(i), planned.end(), is_wanted))
       continue;
     throw ChainError(settings[i].where, fmt::format("{0} needs {1} behind it; write \"{0} {1}\"",
-                                                    planned[i].description->name, wanted));
+                                                    planned[i].description.name, wanted));
   }
-  if (planned.empty() || planned.back().description->position != UnitPosition::last) {
+  if (planned.empty() || planned.back().description.position != UnitPosition::last) {
     throw ChainError(settings.empty() ? "chain" : settings.back().where,
                      "the chain must end in driver, the real OpenGL; write it last");
   }
@@ -103,7 +128,8 @@ std::vector<PlannedUnit> plan(const ChainSettings& settings, UnitTable units) {
 template <typename Take>
 void for_each_file(ChainSettings& settings, UnitTable units, const Take& take) {
   for (UnitSetting& unit : settings) {
-    for (const UnitOption& option : find_unit(unit, units).options) {
+    const UnitDescription description = find_unit(unit, units);
+    for (const UnitOption& option : description.options) {
       if (option.type != OptionType::file) continue;
       for (OptionSetting& setting : unit.options) {
         if (setting.name == option.name && !setting.value.empty()) take(setting);
@@ -122,9 +148,8 @@ std::optional<std::string> assemble(Chain& chain, std::string_view description,
                                     const std::shared_ptr<RenderSession>& session, UnitTable units) {
   try {
     for (const PlannedUnit& unit : plan(settings_of(description), units)) {
-      if (unit.description->make != nullptr) {
-        chain.add(unit.description->make({chain, unit.options, session}));
-      }
+      if (unit.description.make != nullptr)
+        chain.add(unit.description.make({chain, unit.description, unit.options, session}));
     }
   } catch (const std::exception& error) {
     // Units before the one that cannot be made count on those behind them.
@@ -138,6 +163,10 @@ std::string resolved_chain(std::string_view description, const std::filesystem::
   ChainSettings settings = settings_of(description);
   plan(settings, units);
   for_each_file(settings, units, [&](OptionSetting& setting) { setting.value = folder / setting.value; });
+  // The viewer's process may be in another folder, and have other folders of plug-ins.
+  for (UnitSetting& setting : settings) {
+    if (const auto file = plugin_of(setting, units)) setting.name = folder / *file;
+  }
   return chain_text(settings);
 }
 

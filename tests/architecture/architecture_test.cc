@@ -34,7 +34,7 @@ constexpr auto spu_folders = std::to_array<std::string_view>({
     "spu/report", "spu", "spu/stream", "spu/window_system",
     // units
     "spu/driver", "spu/null", "spu/pass", "spu/perf", "spu/print", "spu/track", "spu/pack", "spu/unpack",
-    "spu/trace", "spu/remote", "spu/tiles",
+    "spu/trace", "spu/remote", "spu/tiles", "spu/plugin",
     // the volume unit: what all its stages know
     "spu/volume/program", "spu/volume/refusal", "spu/volume/context", "spu/volume/pipeline",
     "spu/volume/timing", "spu/volume/session", "spu/volume/texture", "spu/volume/budget",

@@ -125,6 +125,48 @@ class Installed(unittest.TestCase):
         self.assertGreater(sum(byte > 40 for byte in pixels), 3000, "the shells show in the middle")
         self.assertEqual(pixels[0], 0, "and not in the corner")
 
+    def test_a_unit_is_built_apart_and_named_in_a_chain(self):
+        build = self.folder / "unit"
+        output_of("cmake", "-S", ROOT / "examples/spu", "-B", build, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={self.development}",
+                  environment=os.environ)
+        output_of("cmake", "--build", build, environment=os.environ)
+        plugins = self.prefix / "lib" / "understudy" / "plugins"
+        environment = {**ENVIRONMENT, "UNDERSTUDY_PLUGINS": str(build)}
+        units = output_of(self.prefix / "bin" / "understudy", "units", environment=environment)
+        self.assertRegex(units, r"wireframe +draws the edges of polygons alone")
+
+        def draw(image, *options, **more):
+            return output_of(self.prefix / "bin" / "understudy", "run", *options, "--", self.prefix / "bin" / "understudy-viewer",
+                             self.volume, "--offscreen", "--frames", "2", "--window-size", "64", "64", "--screenshot", image,
+                             cwd=self.folder, **more)
+
+        draw("solid.png", "--chain", "track driver")
+        draw("by_name.png", "--chain", "wireframe(width=2) track driver", environment=environment)
+        draw("by_file.png", "--chain", "unit/wireframe.so(width=2) track driver")
+        shutil.copytree(build, plugins, ignore=lambda folder, names: [name for name in names if not name.endswith(".so")])
+        draw("installed.png", "--chain", "wireframe(width=2) track driver")
+        shutil.rmtree(plugins)
+        images = {path.stem: path.read_bytes() for path in self.folder.glob("*.png")}
+        self.assertNotEqual(images["by_name"], images["solid"])
+        self.assertEqual(images["by_name"], images["by_file"])
+        self.assertEqual(images["by_name"], images["installed"])
+
+    def test_what_is_no_unit_of_this_version_is_refused_with_a_reason(self):
+        def refusal(source, *flags):
+            (self.folder / "other.cc").write_text(source)
+            output_of("c++", "-shared", "-fPIC", "-std=c++20", *flags, self.folder / "other.cc", "-o", self.folder / "other.so",
+                      environment=os.environ)
+            done = subprocess.run([self.prefix / "bin" / "understudy", "run", "--chain", "./other.so driver", "--", "true"],
+                                  cwd=self.folder, env=ENVIRONMENT, capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            return done.stderr
+
+        self.assertIn("exports no `understudy_unit`", refusal("int nothing;\n"))
+        later = ("#include <spu/plugin/unit_plugin.h>\nUNDERSTUDY_EXPORT_UNIT{.interface = 99, .name = \"other\", .help = \"\"};\n")
+        include = f"-I{self.development}/include/understudy"
+        self.assertIn("another version of Understudy", refusal(later, include))
+        self.assertIn("leaves out its name, help or make()", refusal(later.replace(".interface = 99, ", ""), include))
+
     def test_an_unknown_component_is_named(self):
         project = self.folder / "unknown"
         project.mkdir()

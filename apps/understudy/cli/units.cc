@@ -4,6 +4,12 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "spu/plugin/plugin_file.h"
+#include "spu/registry/assemble.h"
 
 namespace understudy::launcher {
 namespace {
@@ -21,15 +27,30 @@ std::string about(const spu::UnitOption& option) {
                      option.help);
 }
 
-}  // namespace
+std::string about_all(const spu::UnitDescription& unit) {
+  std::string text = about(unit);
+  for (const spu::UnitOption& option : unit.options) text += about(option);
+  return text;
+}
 
-std::string units_text(spu::UnitTable units) {
+/// Units that are built elsewhere, each with its file.
+std::string plugins_text() {
   std::string text;
-  for (const spu::UnitDescription* unit : units) {
-    text += about(*unit);
-    for (const spu::UnitOption& option : unit->options) text += about(option);
+  for (const std::filesystem::path& file : spu::plugin_files()) {
+    try {
+      text += about_all(spu::load_plugin(file));
+      text += fmt::format("           in {}\n", file.string());
+    } catch (const std::runtime_error& error) {
+      text += fmt::format("{:8} cannot be used: {}\n", file.stem().string(), error.what());
+    }
   }
-  return text +
+  return text;
+}
+
+std::string units_text() {
+  std::string text;
+  for (const spu::UnitDescription* unit : spu::unit_table()) text += about_all(*unit);
+  return text + plugins_text() +
          "\nA chain names them from the application to the driver, options in parentheses:\n"
          "  understudy run --chain 'perf(file=calls.json) track volume driver' -- viewer args…\n"
          "  understudy run --chain @chain.json -- viewer args…\n"
@@ -37,10 +58,12 @@ std::string units_text(spu::UnitTable units) {
          "\n";
 }
 
+}  // namespace
+
 void add_units(CLI::App& app, std::function<int()>& chosen) {
   app.add_subcommand("units", "lists the stream processing units that --chain takes")->callback([&chosen] {
     chosen = [] {
-      std::fputs(units_text(spu::unit_table()).c_str(), stdout);
+      std::fputs(units_text().c_str(), stdout);
       return 0;
     };
   });

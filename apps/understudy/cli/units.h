@@ -4,13 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
-#include <string>
-
-#include "spu/registry/assemble.h"
 
 namespace understudy::launcher {
-
-std::string units_text(spu::UnitTable units);
 
 void add_units(CLI::App& app, std::function<int()>& chosen);
 

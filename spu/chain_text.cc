@@ -69,7 +69,7 @@ class ChainTextReader {
       position_ = start;
       fail("between double quotes, a unit is the path of a file, with a slash in it");
     }
-    const std::string file = plain();
+    std::string file = plain();
     if (file.find('/') != std::string::npos) return file;
     position_ = start;
     return present_unit(name("a unit's name"));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/desktop/desktop_entry.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <sstream>
@@ -100,11 +102,12 @@ std::string under_understudy(const std::string& entry, const fs::path& understud
     const std::string key = key_of(line);
     if (is_left_out(key)) continue;
     if (key == "Exec") {
-      line = "Exec=" + command + " -- " + line.substr(line.find('=') + 1);
+      line = fmt::format("Exec={} -- {}", command, line.substr(line.find('=') + 1));
       runs = runs || group == "[Desktop Entry]";
     }
     if (key == "Name" && group == "[Desktop Entry]") line += " (Understudy)";
-    text += line + "\n";
+    text += line;
+    text += '\n';
   }
   if (!runs) throw std::runtime_error("it is no entry of an application: it has no line Exec=");
   return text;

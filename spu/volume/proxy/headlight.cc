@@ -327,6 +327,7 @@ std::variant<volume::Light, Refusal> light_and_reach(SlopeProbe& slopes, const L
   constexpr int rounds = 2;
   constexpr int corrections = 4;
   std::vector<LookedAt> looked_at;
+  looked_at.reserve(angles);
   for (int i = 0; i < angles; ++i) looked_at.push_back({M_PI * i / (angles - 1), golden * i});
   const std::vector<SeenSlope> seen = seen_slopes(slopes, ray, LightSpace(light, ray.way.way), looked_at);
   if (seen.empty()) return Refusal{"fields with a slope show nothing"};

@@ -113,7 +113,7 @@ TEST_F(UnderstudyRun, AViewerThatEndsWithoutADisplayIsToldOfIt) {
     const std::optional<std::string> before =
         std::getenv("DISPLAY") != nullptr ? std::optional<std::string>(std::getenv("DISPLAY")) : std::nullopt;
     display.empty() ? unsetenv("DISPLAY") : setenv("DISPLAY", display.c_str(), 1);
-    const std::string said = understudy("run -- " + viewer).output;
+    std::string said = understudy("run -- " + viewer).output;
     before ? setenv("DISPLAY", before->c_str(), 1) : unsetenv("DISPLAY");
     return said;
   };

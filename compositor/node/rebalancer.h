@@ -65,7 +65,7 @@ class Rebalancer {
   void forget_client(std::uint64_t client);
 
  private:
-  /// Of a request, what its blocks' costs depend on, but for the camera.
+  /// The fields of a request that change the costs of blocks, without the camera.
   struct Appearance {
     volume::Operator op = volume::Operator::over;
     volume::Classification classification;

@@ -46,21 +46,22 @@ namespace {
 constexpr UnitPluginHost host{&UnitOfPlugin::current, &UnitOfPlugin::next};
 
 UnitPluginOption value_of(const UnitOption& option, const OptionValues& values) {
+  const auto of_number = [&](double number) { return UnitPluginOption{option.name, number, number, ""}; };
   switch (option.type) {
     case OptionType::on_off:
-      return {option.name, values.is_on(option.name) ? 1.0 : 0.0, ""};
+      return of_number(values.is_on(option.name) ? 1 : 0);
     case OptionType::integer:
-      return {option.name, double(values.integer(option.name)), ""};
+      return of_number(double(values.integer(option.name)));
     case OptionType::number:
-      return {option.name, values.number(option.name), ""};
+      return of_number(values.number(option.name));
     case OptionType::range:
-      return {option.name, double(values.range(option.name).first), ""};
+      return {option.name, double(values.range(option.name).first), double(values.range(option.name).last), ""};
     case OptionType::text:
     case OptionType::file:
     case OptionType::choice:
-      return {option.name, 0, values.text(option.name).c_str()};
+      return {option.name, 0, 0, values.text(option.name).c_str()};
   }
-  return {option.name, 0, ""};
+  return of_number(0);
 }
 
 std::unique_ptr<Unit> make(const UnitPlace& place) {

@@ -26,6 +26,7 @@ struct UnitPluginHost;
 struct UnitPluginOption {
   const char* name;
   double number;     ///< of an integer or a number; on or off: 1 or 0; of a range its first
+  double last;       ///< of a range; of others as `number`
   const char* text;  ///< of a text, a file or a choice; of others empty. As long as make() runs.
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volumes that are cut by what their blocks are expected to cost.
+// Partitions by the expected costs of blocks.
 #include <gmock/gmock.h>
 
 #include <algorithm>

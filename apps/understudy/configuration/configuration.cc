@@ -2,6 +2,7 @@
 #include "apps/understudy/configuration/configuration.h"
 
 #include <fmt/format.h>
+#include <strings.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -17,19 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return text;
-}
-
 /// A viewer is named by its program, and where that is Python by its script.
 std::vector<std::string> names_of(const std::vector<std::string>& viewer) {
   std::vector<std::string> names;
   if (viewer.empty()) return names;
-  names.push_back(lower_case(fs::path(viewer.front()).filename()));
+  names.push_back(fs::path(viewer.front()).filename());
   const auto script =
       std::ranges::find_if(viewer, [](const std::string& word) { return word.ends_with(".py"); });
-  if (script != viewer.end()) names.push_back(lower_case(fs::path(*script).stem()));
+  if (script != viewer.end()) names.push_back(fs::path(*script).stem());
   return names;
 }
 
@@ -91,9 +87,12 @@ std::vector<ConfiguredOption> configured_options(const fs::path& file, const std
   std::vector<std::string> known;
   const std::vector<std::string> names = names_of(viewer);
   for (const auto& [key, node] : table) {
-    if (!node.is_table() || std::ranges::find(names, lower_case(std::string(key.str()))) == names.end())
-      continue;
-    add_options(file, *node.as_table(), std::string(key.str()), options, known);
+    const std::string section(key.str());
+    const auto is_named = [&](const std::string& name) {
+      return strcasecmp(name.c_str(), section.c_str()) == 0;
+    };
+    if (!node.is_table() || std::ranges::none_of(names, is_named)) continue;
+    add_options(file, *node.as_table(), section, options, known);
   }
   add_options(file, table, "", options, known);
   return options;

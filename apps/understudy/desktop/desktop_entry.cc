@@ -2,6 +2,7 @@
 #include "apps/understudy/desktop/desktop_entry.h"
 
 #include <fmt/format.h>
+#include <strings.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -15,9 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return text;
+/// "paraview" names paraview and org.paraview.ParaView.
+bool names(const std::string& viewer, const std::string& entry) {
+  if (viewer.size() > entry.size()) return false;
+  const std::size_t before = entry.size() - viewer.size();
+  return strcasecmp(entry.c_str() + before, viewer.c_str()) == 0 && (before == 0 || entry[before - 1] == '.');
 }
 
 /// A word of an Exec line: quoted where it has a character that is reserved there.
@@ -78,12 +81,10 @@ std::vector<fs::path> application_folders() {
 std::optional<fs::path> find_desktop_entry(const std::string& viewer) {
   std::error_code ignored;
   if (viewer.ends_with(".desktop") && fs::is_regular_file(viewer, ignored)) return viewer;
-  const std::string wanted = lower_case(viewer);
   for (const fs::path& folder : application_folders()) {
     for (const fs::directory_entry& file : fs::directory_iterator(folder, ignored)) {
       if (file.path().extension() != ".desktop") continue;
-      const std::string name = lower_case(file.path().stem());
-      if (name == wanted || name.ends_with("." + wanted)) return file.path();
+      if (names(viewer, file.path().stem())) return file.path();
     }
   }
   return std::nullopt;

@@ -61,4 +61,13 @@ Box texture_box(const VolumeDescription& volume, const TexelBox& cells) {
   return box;
 }
 
+bool is_all_of_texture(const Box& region, const std::array<int, 3>& size) {
+  constexpr double rounding = 1e-6;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double end = 0.5 / size[axis] + rounding;
+    if (region.low[axis] > end || region.high[axis] < 1 - end) return false;
+  }
+  return true;
+}
+
 }  // namespace understudy::volume

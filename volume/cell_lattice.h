@@ -38,4 +38,7 @@ int lattice_texel(const VolumeDescription& volume, const CellLattice& lattice, i
 /// positions. Sides on the rim of the lattice are infinite, as the clamp is.
 Box texture_box(const VolumeDescription& volume, const TexelBox& cells);
 
+/// Whether a box reaches the ends of a texture of so many texels, but for the half texel that is even there.
+bool is_all_of_texture(const Box& region, const std::array<int, 3>& size);
+
 }  // namespace understudy::volume

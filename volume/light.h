@@ -12,12 +12,20 @@
 //
 //     s lit + (1 - s) even c,   s = |gradient| / full_slope
 //
+// Programs that keep their normals from a division by zero make them shorter where gradients g are small
+// (`guard`): n . l and n . h are cosines times
+//
+//     |g| / (|g| + e)   or   |g| / sqrt(|g|^2 + e^2)
+//
 // Shading of another kind, with light that shines from the eye, is a function of the cosine between normal and
-// ray alone: `response` holds it, point by point, in place of |n . l| and |n . h|^shininess.
+// ray (shortened likewise) alone: `response` holds it, point by point, in place of |n . l| and |n .
+// h|^shininess.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -32,6 +40,22 @@ struct LightResponse {
 };
 
 constexpr std::size_t max_light_responses = 4096;
+
+/// What keeps normals from a division by zero.
+struct NormalGuard {
+  enum class Form : std::uint8_t { added, root_of_squares };
+  /// e, in values, normalised as those of a TransferFunction, per unit of length of a light's `space`; 0:
+  /// normals have length 1.
+  double slope = 0;
+  Form form = Form::added;
+
+  /// Of a normal where the field has this slope, which is positive.
+  double length_of_normal(double of_gradient) const {
+    return form == Form::added ? of_gradient / (of_gradient + slope)
+                               : of_gradient / std::sqrt(of_gradient * of_gradient + slope * slope);
+  }
+  bool operator==(const NormalGuard&) const = default;
+};
 
 /// The default is understudy render's --material.
 struct Light {
@@ -48,6 +72,7 @@ struct Light {
   float shininess = 20;
   /// In values, normalised as those of a TransferFunction, per unit of length of `space`; 0: nothing fades.
   float full_slope = 0;
+  NormalGuard guard{};
   /// False: where n . l is negative the point lies in its own shadow, and where n . h is it does not gleam.
   bool two_sided = true;
   /// False: surfaces alone are lit; what the transfer function shows keeps its colour.

@@ -56,10 +56,11 @@ struct RaySteps {
   /// Samples up to so many steps behind the opaque geometry still count.
   double past_depth = 0;
   std::optional<RayOffsets> offsets;  ///< added to `first`, by pixel of the window
-  /// There are as many samples as without offsets: the last one may lie beyond the region, where the field is
-  /// what the texture's wrapping (repetition aside) makes of it. The region is then the whole texture, and
-  /// there are no clip planes.
-  bool counted_without_offsets = false;
+  /// There are as many samples as if the first lay so many steps from t0, wherever it lies: programs that count
+  /// their samples before they take them, as ceil(L) from the middle of the first step. The last one may then
+  /// lie beyond the region, where the field is what the texture's wrapping (repetition aside) makes of it. The
+  /// region is the whole texture, and there are no clip planes. Null: samples lie up to L.
+  std::optional<double> counted_from;
   bool operator==(const RaySteps&) const = default;
 };
 

@@ -110,7 +110,8 @@ void write(Writer& out, const std::optional<RaySteps>& steps) {
   out.integer(steps->divided);
   out.real(steps->rounding);
   out.real(steps->past_depth);
-  out.integer(steps->counted_without_offsets);
+  out.integer(steps->counted_from.has_value());
+  if (steps->counted_from) out.real(*steps->counted_from);
   out.integer(steps->offsets.has_value());
   if (!steps->offsets) return;
   out.integer(steps->offsets->width);
@@ -126,7 +127,7 @@ std::optional<RaySteps> read_steps(Reader& in) {
   steps.divided = in.flag("steps.divided");
   steps.rounding = in.real("steps.rounding");
   steps.past_depth = in.real("steps.past_depth");
-  steps.counted_without_offsets = in.flag("steps.counted_without_offsets");
+  if (in.flag("steps.has_counted_from")) steps.counted_from = in.real("steps.counted_from");
   if (!in.flag("steps.offsets")) return steps;
   RayOffsets& offsets = steps.offsets.emplace();
   constexpr int most = limits::max_ray_offsets;
@@ -208,6 +209,8 @@ void write(Writer& out, const std::optional<Light>& light) {
   for (const auto& colour : {light->ambient, light->diffuse, light->specular}) write_shares(out, colour);
   out.real(light->shininess);
   out.real(light->full_slope);
+  out.real(light->guard.slope);
+  out.integer(std::int64_t(light->guard.form));
   out.integer(light->two_sided);
   out.integer(light->on_samples);
   write(out, light->reach);
@@ -231,6 +234,8 @@ std::optional<Light> read_light(Reader& in) {
   read_shares(in, "light.specular", light.specular);
   light.shininess = in.real32("light.shininess");
   light.full_slope = in.real32("light.full_slope");
+  light.guard.slope = in.real("light.guard.slope");
+  light.guard.form = NormalGuard::Form(in.small("light.guard.form", 0, 1));
   light.two_sided = in.flag("light.two_sided");
   light.on_samples = in.flag("light.on_samples");
   read(in, "light.reach", light.reach);

@@ -601,6 +601,20 @@ TEST(StepDensity, IsNoneWhereSamplesLieAnywhere) {
   EXPECT_FALSE(step_density({}));
 }
 
+TEST(CountingAhead, TakesAsManySamplesAsTheProgramWherever) {
+  // floor(L), round(L) and ceil(L) samples: the offsets of fits -1/2, 0 and 1/2.
+  const auto rules = [](double offset) {
+    return rules_counting_ahead({{1, 0, 0, 0, 1, 0, 0, 0, 1}, offset, 0});
+  };
+  for (const volume::RaySteps& steps : rules(-0.5)) EXPECT_EQ(samples_of_length(steps, 7.3), 7);
+  for (const volume::RaySteps& steps : rules(0)) EXPECT_EQ(samples_of_length(steps, 7.6), 8);
+  for (const volume::RaySteps& steps : rules(0.5)) EXPECT_EQ(samples_of_length(steps, 7.3), 8);
+  const auto ceil_in_middles = rules(0.5);
+  ASSERT_TRUE(std::ranges::any_of(ceil_in_middles, [](const auto& steps) { return steps.first == 0.5; }));
+  EXPECT_FALSE(std::ranges::any_of(ceil_in_middles, [](const auto& steps) { return steps.first == 0; }))
+      << "which is the rule of constant steps";
+}
+
 TEST(SplitFields, AreSplitWithinTheTextureWhereverTheBoxLies) {
   const volume::Vec3 along{0.01, 0.02, -0.1};
   const auto fields_of = [&](double low, double high) {

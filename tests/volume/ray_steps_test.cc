@@ -3,6 +3,8 @@
 // double-precision reference, and the same for any partition.
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "tests/volume/scenes.h"
@@ -34,8 +36,8 @@ struct Case {
   double first;
   bool divided;
   Operator op;
-  bool offset = false;   ///< every ray begins at a place of its own
-  bool counted = false;  ///< and has as many samples as without
+  bool offset = false;                      ///< every ray begins at a place of its own
+  std::optional<double> counted_from = {};  ///< RaySteps' own
 };
 
 std::vector<Case> cases() {
@@ -48,9 +50,12 @@ std::vector<Case> cases() {
           {"parallel, divided, maximum", parallel_camera(), 0, true, Operator::max},
           {"perspective, noise at the entry", usual, 0, false, Operator::over, true},
           {"parallel, noise half a step in", parallel_camera(), 0.5, false, Operator::add, true},
-          {"perspective, samples moved by noise", usual, 0, false, Operator::over, true, true},
-          {"parallel, samples moved by noise, maximum", parallel_camera(), 0, false, Operator::max, true, true},
-          {"perspective, parts moved by noise", usual, 0, true, Operator::add, true, true}};
+          {"perspective, samples moved by noise", usual, 0, false, Operator::over, true, 0},
+          {"parallel, samples moved by noise, maximum", parallel_camera(), 0, false, Operator::max, true, 0},
+          {"perspective, parts moved by noise", usual, 0, true, Operator::add, true, 0},
+          {"perspective, a part of a step beyond", usual, 0.5, false, Operator::over, false, 0},
+          {"parallel, a whole step beyond", parallel_camera(), 1, false, Operator::add, false, 0},
+          {"perspective, a step less", usual, 0, false, Operator::over, false, 1}};
 }
 
 RenderRequest request_of(const Texture& texture, const Case& c) {
@@ -60,8 +65,8 @@ RenderRequest request_of(const Texture& texture, const Case& c) {
   request.steps->divided = c.divided;
   if (c.offset) request.steps->offsets = RayOffsets{3, 2, {0.1F, 0.9F, 0.4F, 0.7F, 0, 0.3F}};
   request.op = c.op;
-  request.steps->counted_without_offsets = c.counted;
-  if (!c.counted) request.region = {{0.03, 0, 0.05}, {0.97, 0.9, 1}};
+  request.steps->counted_from = c.counted_from;
+  if (!c.counted_from) request.region = {{0.03, 0, 0.05}, {0.97, 0.9, 1}};
   return request;
 }
 
@@ -106,7 +111,7 @@ TEST(RaySteps, EndAtOpaqueGeometryAndClipPlanes) {
   const BrickStore store = filled(texture);
   for (const double past : {0.0, 1.0})
     for (const Case& c : cases()) {
-      if (c.counted) continue;  // know no clip planes
+      if (c.counted_from) continue;  // know no clip planes
       RenderRequest request = request_of(texture, c);
       request.steps->past_depth = past;
       request.clip_planes = {{{1, 0.3, -0.2}, -0.2}};
@@ -204,12 +209,17 @@ TEST(RaySteps, WithoutSenseAreRefused) {
   bad.steps->offsets = RayOffsets{1, 1, {-1.5F}};
   EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "before the entry";
   bad = good;
-  bad.steps->counted_without_offsets = true;
+  bad.steps->counted_from = 0;
   EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "not the whole texture";
   bad.region = {{0, 0, 0}, {1, 1, 1}};
   EXPECT_NO_THROW(validate(texture.description, bad));
   bad.clip_planes = {{{1, 0, 0}, -0.5}};
   EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "a clip plane";
+  bad.clip_planes.clear();
+  for (const double from : {-1.0, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
+    bad.steps->counted_from = from;
+    EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "counted from " << from;
+  }
 }
 
 }  // namespace

@@ -140,12 +140,18 @@ struct Scene {
   const char* name;
   bool surfaces, light, haze, cut, divided;
   float full_slope = 0;
+  NormalGuard guard{};
+  std::optional<double> counted_from{};
 };
-constexpr Scene scenes[] = {{"surfaces", true, false, false, false, false},
-                            {"surfaces in colours", true, false, true, true, false},
-                            {"lit surfaces in lit colours", true, true, true, true, true},
-                            {"lit colours", false, true, true, false, false},
-                            {"lit colours that fade", true, true, true, false, false, 1}};
+constexpr Scene scenes[] = {
+    {"surfaces", true, false, false, false, false},
+    {"surfaces in colours", true, false, true, true, false},
+    {"lit surfaces in lit colours", true, true, true, true, true},
+    {"lit colours", false, true, true, false, false},
+    {"lit colours that fade", true, true, true, false, false, 1},
+    {"lit by shorter normals", true, true, true, false, false, 0, {0.5}},
+    {"lit by normals of squares", true, true, true, false, false, 0, {0.5, NormalGuard::Form::root_of_squares}},
+    {"lit colours, counted ahead", false, true, true, false, false, 0, {}, 0}};
 
 RenderRequest request_of(const Texture& texture, const Scene& scene) {
   RenderRequest request = request_on_steps(texture);
@@ -153,6 +159,7 @@ RenderRequest request_of(const Texture& texture, const Scene& scene) {
   if (scene.surfaces) request.surfaces = two_veils();
   if (scene.light) request.light = some_light();
   if (scene.light) request.light->full_slope = scene.full_slope;
+  if (scene.light) request.light->guard = scene.guard;
   request.steps->divided = scene.divided;
   if (scene.divided) request.steps->offsets = RayOffsets{2, 2, {0, 0.3F, 0.6F, 0.9F}};
   if (scene.cut) {
@@ -298,6 +305,7 @@ TEST(Light, OnSlicesIsWhatDoublePrecisionSays) {
       request.light = some_light();
       request.light->two_sided = two_sided;
       if (two_sided) request.light->full_slope = 2;  // of about 4 at most
+      if (two_sided == from_the_eye) request.light->guard = {1};
       if (from_the_eye) request.light->direction = {};
       give_ghost_layer(texture, request);
       FrameCounts counts;
@@ -320,6 +328,7 @@ Light some_response() {
   Light light = some_light();
   light.direction = {};
   light.even = {0.5F, 0.25F, 1};
+  light.guard = {0.7, NormalGuard::Form::root_of_squares};
   light.response.clear();
   for (int i = 0; i <= 64; ++i) {
     const float cosine = float(i) / 32 - 1;
@@ -398,6 +407,7 @@ TEST(Surfaces, AndLightWithoutSenseAreRefused) {
   refused("singular", [](RenderRequest& r) { r.light->space = {}; });
   refused("shininess", [](RenderRequest& r) { r.light->shininess = -1; });
   refused("full slope", [](RenderRequest& r) { r.light->full_slope = -1; });
+  refused("guard", [](RenderRequest& r) { r.light->guard.slope = -1; });
   refused("diffuse", [](RenderRequest& r) { r.light->diffuse[1] = NAN; });
   refused("even", [](RenderRequest& r) { r.light->even[0] = -1; });
   refused("reach", [](RenderRequest& r) { r.light->reach[2] = 0; });

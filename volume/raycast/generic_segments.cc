@@ -202,17 +202,18 @@ class SegmentWalk {
       colour = even;
       return;
     }
+    const double slope = std::sqrt(square);
+    const double length = prepared_light.guard.length_of_normal(slope);
     const auto cosine = [&](double projection) {
-      const double c = projection / std::sqrt(square);
+      const double c = projection / slope * length;
       return std::min(prepared_light.model.two_sided ? std::abs(c) : std::max(c, 0.0), 1.0);
     };
-    const double slope = std::sqrt(square);
     const double share =
         slope < double(prepared_light.full_slope) ? slope / double(prepared_light.full_slope) : 1;
     double diffuse = cosine(to_light);
     double gleam = std::pow(cosine(to_half), double(prepared_light.model.shininess));
     if (!prepared_light.model.response.empty()) {
-      const LightResponse response = prepared_light.response_at(float(to_light / std::sqrt(square)));
+      const LightResponse response = prepared_light.response_at(float(to_light / slope * length));
       diffuse = double(response.diffuse);
       gleam = double(response.specular);
     }

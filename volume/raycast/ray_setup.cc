@@ -101,7 +101,7 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
       }
       const auto steps_to = [&](V end) HWY_ATTR { return hn::Sub(hn::Div(hn::Sub(end, entry), part), offset); };
       first = hn::Max(hn::Ceil(steps_to(low)), zero);
-      const V counted_from = setup.steps->counted_without_offsets ? hn::Set(d, setup.steps->first) : offset;
+      const V counted_from = setup.steps->counted_from ? hn::Set(d, *setup.steps->counted_from) : offset;
       const V to_end = hn::Sub(hn::Div(hn::Sub(high, entry), part), counted_from);
       last = hn::Floor(hn::Min(to_end, hn::Sub(parts, one)));
       begin = setup.segments ? hn::Max(steps_to(low), hn::Neg(one)) : first;

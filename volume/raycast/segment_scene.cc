@@ -67,10 +67,6 @@ std::array<double, 9> inverse_of(const std::array<double, 9>& m) {
   return inverse;
 }
 
-bool has_segments(const RenderRequest& request) {
-  return request.method != Method::post_classified || !request.surfaces.empty();
-}
-
 /// How far, in cells along an axis, a ray of the image goes from plane to plane at most; infinite where rays
 /// run along the planes. Directions of rays are linear in the pixel's position, so that the ratio of their
 /// parts along an axis and across the planes is largest in a corner.
@@ -100,6 +96,10 @@ std::array<double, 3> reach_between_planes(const VolumeDescription& volume, cons
 }
 
 }  // namespace
+
+bool has_segments(const RenderRequest& request) {
+  return request.method != Method::post_classified || !request.surfaces.empty();
+}
 
 bool walks_segments(const RenderRequest& request) {
   return has_segments(request) || request.light.has_value();
@@ -167,6 +167,8 @@ void validate_segments(const VolumeDescription& volume, const RenderRequest& req
                std::isfinite(light->shininess) && light->shininess >= 0 && std::isfinite(light->full_slope) &&
                light->full_slope >= 0,
            "the light's colours, shininess and full slope must be finite and not negative");
+    demand(std::isfinite(light->guard.slope) && light->guard.slope >= 0,
+           "what guards normals must be finite and not negative");
     demand(std::ranges::all_of(light->reach, [](double cells) { return cells >= 0.125 && cells <= 16; }),
            "a light's gradients reach 1/8 to 16 texels");
     demand(not_negative(light->even), "what points without a gradient keep must be finite and not negative");
@@ -183,6 +185,7 @@ void validate_segments(const VolumeDescription& volume, const RenderRequest& req
 PreparedLight::PreparedLight(const Light& light, const VolumeDescription& volume)
     : model(light),
       full_slope(float(light.full_slope * largest_texel(volume.type))),
+      guard{light.guard.slope * largest_texel(volume.type), light.guard.form},
       inverse_(inverse_of(light.space)) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     size_[axis] = volume.size[axis];

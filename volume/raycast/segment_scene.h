@@ -15,6 +15,9 @@ namespace understudy::volume {
 
 struct RenderRequest;
 
+/// Whether what lies between a request's samples counts: it has surfaces, segments or adaptive steps.
+bool has_segments(const RenderRequest& request);
+
 /// Whether a request has surfaces, light, segments or adaptive steps; other requests know nothing of all this.
 bool walks_segments(const RenderRequest& request);
 
@@ -50,6 +53,7 @@ struct PreparedLight {
   Light model;
   std::array<float, 9> metric{};
   float full_slope = 0;                 ///< the model's, in units of the texel type
+  NormalGuard guard{};                  ///< likewise
   std::array<float, 3> reach{1, 1, 1};  ///< the model's
 
  private:

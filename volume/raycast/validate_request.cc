@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "volume/cell_lattice.h"
 #include "volume/matrix.h"
 #include "volume/raycast/pre_integration_lookup.h"
 #include "volume/raycast/ray_caster.h"
@@ -71,7 +72,7 @@ void validate_classification(const VolumeDescription& volume, const Classificati
 
 void validate_steps(const RaySteps& steps, const Box& region) {
   if (!are_finite(steps.metric) || !std::isfinite(steps.first) || !std::isfinite(steps.rounding) ||
-      !std::isfinite(steps.past_depth))
+      !std::isfinite(steps.past_depth) || !std::isfinite(steps.counted_from.value_or(0)))
     refuse("the steps along rays hold a value that is not finite");
   const auto row = [&](std::size_t r) {
     return Vec3{steps.metric[3 * r], steps.metric[3 * r + 1], steps.metric[3 * r + 2]};
@@ -85,6 +86,8 @@ void validate_steps(const RaySteps& steps, const Box& region) {
         steps.first <= max_planes && steps.past_depth <= max_planes))
     refuse("rays begin {} steps from their entry, end {} behind opaque geometry, and are rounded by {}",
            steps.first, steps.past_depth, steps.rounding);
+  if (const double from = steps.counted_from.value_or(0); !(from >= 0 && from <= max_planes))
+    refuse("samples are counted from {} steps behind their rays' entry", from);
   if (const auto& offsets = steps.offsets) {
     const bool rectangle =
         offsets->width > 0 && offsets->height > 0 &&
@@ -104,15 +107,11 @@ void validate_steps(const RaySteps& steps, const Box& region) {
 
 /// Samples beyond the region must not lie in texels that only others hold, and not in segments.
 void validate_count(const VolumeDescription& volume, const RenderRequest& request) {
-  if (!request.steps || !request.steps->counted_without_offsets) return;
-  constexpr double rounding = 1e-6;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double half_texel = 0.5 / volume.size[axis] + rounding;
-    if (request.region.low[axis] > half_texel || request.region.high[axis] < 1 - half_texel)
-      refuse("samples counted without offsets, in a region that is not the whole texture along axis {}", axis);
-  }
-  if (!request.clip_planes.empty() || walks_segments(request))
-    refuse("samples counted without offsets know neither clip planes nor segments");
+  if (!request.steps || !request.steps->counted_from) return;
+  if (!is_all_of_texture(request.region, volume.size))
+    refuse("samples counted before they are taken, in a region that is not the whole texture");
+  if (!request.clip_planes.empty() || has_segments(request))
+    refuse("samples counted before they are taken know neither clip planes nor segments");
 }
 
 void validate_slice_segment(const VolumeDescription& volume, const RenderRequest& request) {

@@ -202,8 +202,15 @@ HWY_INLINE void find_cosines(const SegmentPacket& rays, const Slope& slope, cons
   const Floats estimate = hn::ApproximateReciprocalSqrt(safe);
   const Floats rest = hn::NegMulAdd(hn::Mul(safe, estimate), estimate, one);
   const Floats unit = hn::MulAdd(hn::Mul(hn::Set(f, 0.5F), estimate), rest, estimate);
+  Floats inverse = unit;
+  if (constants.is_guarded) {
+    const Floats guard = hn::Div(constants.guard_in_slopes, size);
+    const Floats length =
+        constants.guards_squares ? hn::Sqrt(hn::MulAdd(guard, guard, safe)) : hn::MulAdd(safe, unit, guard);
+    inverse = hn::Div(one, length);
+  }
   const auto projection = [&](const std::array<Floats, 3>& direction) HWY_ATTR {
-    return hn::Mul(times(direction[0], direction[1], direction[2]), unit);
+    return hn::Mul(times(direction[0], direction[1], direction[2]), inverse);
   };
   const auto cosine = [&](const std::array<Floats, 3>& direction) HWY_ATTR {
     const Floats c = projection(direction);

@@ -53,6 +53,7 @@ std::array<double, 4> illuminated(const Field& field, const VolumeDescription& v
   const Vec4 forward = transform(linear(light.ray_space.value_or(light.space)), {way[0], way[1], way[2], 0});
   const Vec3 eye = unit({-forward[0], -forward[1], -forward[2]});
   const Vec3 to_light = length(light.direction) > 0 ? unit(light.direction) : eye;
+  normal = scale(normal, light.guard.length_of_normal(slope));
   const auto cosine = [&](const Vec3& direction) {
     const double c = dot(normal, direction);
     return light.two_sided ? std::abs(c) : std::max(c, 0.0);

@@ -289,8 +289,8 @@ void take_steps(const RenderRequest& request, const Vec4& near, const Vec4& far,
   };
   double steps = steps_between(enter, leave), part = (leave - enter) / steps;
   const double offset = rule.offsets ? rule.offsets->at(x, y) : 0;
-  const double uncounted = rule.counted_without_offsets ? offset : 0;
   const double first = rule.first + offset;
+  const double uncounted = rule.counted_from ? first - *rule.counted_from : 0;
   int count = int(std::floor(steps - (first - uncounted))) + 1;
   if (rule.divided) {
     count = int(std::floor(steps + rule.rounding));

@@ -133,7 +133,6 @@ std::vector<CoordinateSpace> spaces_from_eye(const MarchContext& measured, const
     std::vector<CoordinateSpace> spaces = spaces_of(
         input, {volume::add(box.low, *origin), volume::add(box.high, *origin)}, measured.texture.size);
     if (spaces.front().of_whole_box) continue;
-    std::erase_if(spaces, &CoordinateSpace::of_whole_box);
     for (CoordinateSpace& space : spaces) space.origin = name;
     return spaces;
   }

@@ -19,6 +19,7 @@
 #include "spu/volume/proxy/sample_places.h"
 #include "spu/volume/proxy/shader_background.h"
 #include "spu/volume/proxy/step_fit.h"
+#include "volume/cell_lattice.h"
 #include "volume/matrix.h"
 #include "volume/request.h"
 
@@ -224,6 +225,12 @@ void MarchMeasurement::take_rules(const std::vector<StepFit>& fits) {
     if (march_.jitter || measured_.clipped || !box_.cuts.empty()) of_fit.resize(1);
     rules_.insert(rules_.end(), of_fit.begin(), of_fit.end());
   }
+  // Planes and noise end rays elsewhere.
+  if (march_.jitter || march_.mean || measured_.clipped || !box_.cuts.empty()) return;
+  for (const StepFit& fit : fits) {
+    const std::vector<volume::RaySteps> of_fit = rules_counting_ahead(fit);
+    rules_.insert(rules_.end(), of_fit.begin(), of_fit.end());
+  }
 }
 
 std::optional<Refusal> MarchMeasurement::take_offsets() {
@@ -232,7 +239,7 @@ std::optional<Refusal> MarchMeasurement::take_offsets() {
   if (!offsets) return "the texture of noise at the rays' beginnings cannot be read back";
   for (volume::RaySteps& rule : rules_) {
     rule.offsets = offsets;
-    rule.counted_without_offsets = march_.jitter->moves_only;
+    if (march_.jitter->moves_only && !rule.counted_from) rule.counted_from = rule.first;
   }
   return std::nullopt;
 }
@@ -348,6 +355,10 @@ MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& space
     for (std::size_t r = 0; r < rules_.size(); ++r) {
       const bool seen = !march_.extreme || (i == 0 && r < extremes_seen_);
       if (march_.from_exit && !may_be_counted_from_exit(rules_[r])) continue;
+      // Fields must have shown where samples lie that are counted ahead.
+      if (rules_[r].counted_from && !march_.jitter &&
+          (split_.empty() || !volume::is_all_of_texture(boxes[i]->region, measured_.texture.size)))
+        continue;
       const volume::RaySteps placed = march_.from_exit ? counted_from_exit(rules_[r], rays, probe_) : rules_[r];
       if (misplaced_part(split_, rays, placed) <= most_misplaced)
         add_marches(spaces[i], rules_[r], seen, marches);

@@ -92,7 +92,7 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
   const volume::Vec3 axes = axes_in_texels(measured.texture.size);
   for (const StepFit& fit : fit_steps(std::get<std::vector<CountedRay>>(counted), axes)) {
     const volume::RaySteps rule = rules_of(fit).front();
-    if (fit.unexplained > most_unexplained || rule.first != march.steps.first) continue;
+    if (fit.unexplained > most_unexplained || rule.first != counted_from(march.steps)) continue;
     changed.steps.metric = rule.metric;
     return changed;
   }
@@ -161,7 +161,7 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   // have not both a sample less of what is denser by just that much.
   constexpr std::array short_lengths{2.5, 4.5, 7.5, 3.5};
   const std::ptrdiff_t enough = march.shows_one_colour() ? 1 : 2;
-  const double first = march.steps.divided ? 0.5 : march.steps.first;
+  const double first = march.steps.divided ? 0.5 : counted_from(march.steps);
   std::ptrdiff_t agreeing = 0;
   for (const double length : short_lengths) {
     if (looked_at.values == 0 || agreeing == enough) break;
@@ -200,7 +200,9 @@ bool still_placed(const MarchContext& measured, const March& march, const ProxyB
   values.push_back(march.translucent);
   const auto middle = rays.middle();
   const auto seen = seen_values(values, probe.at(middle[0], middle[1], values));
-  const auto split = split_rays(measured, probe, march, box, seen, looked_at.bands);
+  SplitBands bands = looked_at.bands;
+  bands.across_all_axes = false;
+  const auto split = split_rays(measured, probe, march, box, seen, bands);
   const volume::RaySteps placed = march.from_exit ? counted_from_exit(march.steps, rays, probe) : march.steps;
   return misplaced_part(split, rays, placed) <= most_misplaced;
 }

@@ -22,6 +22,7 @@
 #include "spu/volume/session/render_session.h"
 #include "spu/volume/timing/frame_account.h"
 #include "spu/volume/verification/tile_comparison.h"
+#include "volume/cell_lattice.h"
 #include "volume/footprint.h"
 #include "volume/raycast/ray_caster.h"
 
@@ -255,6 +256,11 @@ ProxyBox RayCasterStage::find_box(Draw& draw) {
     throw Refusal{"the coordinates of the ray caster's box change while its volume stays",
                   fmt::format("'{}' was measured where the box was another", draw.spaces.front().input),
                   "nothing: which part of the volume is in the box is known of texture coordinates alone"};
+  }
+  if (march && march->steps.counted_from &&
+      !volume::is_all_of_texture(box.region, draw.measured().texture.size)) {
+    march.reset();
+    throw Refusal{"a part of the volume is in a box whose samples are counted before they are taken"};
   }
   if (!box.cuts.empty() && !draw.known.verified.left_inside.empty())
     throw Refusal{draw.known.verified.left_inside};
@@ -500,8 +506,8 @@ ImageRequest RayCasterStage::ask(const Draw& draw, const March& march, const Pro
   if (!image.ray_ends.empty() && march.steps.divided)
     throw Refusal{"planes cut a ray caster's box whose rays are divided evenly"};
   const bool cut = !image.ray_ends.empty() || !image.parts.front().empty();
-  if (cut && march.steps.counted_without_offsets)
-    throw Refusal{"planes cut a ray caster's box whose samples are moved by noise"};
+  if (cut && march.steps.counted_from)
+    throw Refusal{"planes cut a ray caster's box whose samples are counted before they are taken"};
   // One number a pixel travels to the nodes.
   const std::size_t pixels = volume::footprint(image.request, image.request.region).pixels();
   const auto refuse_more = [&](const char* reason) {

@@ -2,6 +2,7 @@
 #include "spu/volume/proxy/sample_places.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -175,6 +176,38 @@ std::vector<SplitRays> SplitCounting::counted() {
   return std::move(all_);
 }
 
+std::size_t longest_axis(const volume::Vec3& way) {
+  std::size_t longest = 0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    if (std::abs(way[k]) > std::abs(way[longest])) longest = k;
+  }
+  return longest;
+}
+
+/// Of a field that is split at a part of the box's way along an axis; none outside of the texture.
+std::optional<double> plane_at(const volume::Box& box, std::size_t axis, double part) {
+  // A box may reach beyond the texture by a texel, and a thin one lie there with most of its inside.
+  const double low = std::max(box.low[axis], 0.0);
+  const double high = std::min(box.high[axis], 1.0);
+  const double place = low + part * (high - low);
+  const double plane = std::round(place / FieldProbe::split_unit) * FieldProbe::split_unit;
+  if (low < high && plane > 0 && plane < 1) return plane;
+  return std::nullopt;
+}
+
+/// Across the other axes that rays like this one cross steeply enough: a coordinate may be right along one axis
+/// and wrong along another.
+void add_other_axes(const volume::Box& box, const volume::Vec3& way,
+                    std::vector<FieldProbe::SplitField>& fields) {
+  constexpr double least_crossed = 0.3;  // of the longest part of the way
+  const FieldProbe::SplitField first = fields.front();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (axis == first.axis || std::abs(way[axis]) < least_crossed * std::abs(way[first.axis])) continue;
+    if (const auto plane = plane_at(box, axis, 0.53))
+      fields.push_back({axis, *plane, first.before, first.behind});
+  }
+}
+
 }  // namespace
 
 std::vector<SeenValue> seen_values(const std::vector<float>& values, const std::vector<Rgba>& rays) {
@@ -185,18 +218,10 @@ std::vector<SeenValue> seen_values(const std::vector<float>& values, const std::
 
 std::vector<FieldProbe::SplitField> split_fields(const volume::Box& box, const volume::Vec3& way, float before,
                                                  float behind) {
-  std::size_t axis = 0;
-  for (std::size_t k = 1; k < 3; ++k) {
-    if (std::abs(way[k]) > std::abs(way[axis])) axis = k;
-  }
-  // A box may reach beyond the texture by a texel, and a thin one lie there with most of its inside.
-  const double low = std::max(box.low[axis], 0.0);
-  const double high = std::min(box.high[axis], 1.0);
+  const std::size_t axis = longest_axis(way);
   std::vector<FieldProbe::SplitField> fields;
   for (const double part : {0.37, 0.61}) {
-    const double place = low + part * (high - low);
-    const double plane = std::round(place / FieldProbe::split_unit) * FieldProbe::split_unit;
-    if (low < high && plane > 0 && plane < 1) fields.push_back({axis, plane, before, behind});
+    if (const auto plane = plane_at(box, axis, part)) fields.push_back({axis, *plane, before, behind});
   }
   return fields;
 }
@@ -211,8 +236,9 @@ std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& prob
   if (!way || translucent == values.end()) return {};
   const auto contrast = contrast_to(translucent->ray, march, values);
   if (!contrast) return {};
-  const auto fields = split_fields(box.region, *way, contrast->value, march.translucent);
+  auto fields = split_fields(box.region, *way, contrast->value, march.translucent);
   if (fields.empty()) return {};
+  if (bands.across_all_axes) add_other_axes(box.region, *way, fields);
   SplitCounting counting(probe, contrast->amount, premultiplied_already(measured, march), fields);
   const int columns = bands.halves ? (probe.width() + 1) / 2 : probe.width();
   for (int band = 0; band < bands.number; ++band) {
@@ -227,20 +253,26 @@ double misplaced_part(const std::vector<SplitRays>& split, const RaysThroughBox&
                       const volume::RaySteps& steps) {
   constexpr double fewest_samples = 4;
   constexpr std::size_t fewest_rays = 64;
-  std::size_t told = 0, misplaced = 0;
+  std::array<std::size_t, 3> told{};  // by the axis of the plane
+  std::array<std::size_t, 3> misplaced{};
   for (const SplitRays& of_field : split) {
+    const std::size_t axis = of_field.field.axis;
     for (const SplitRay& ray : of_field.rays) {
       const auto through = rays.through(ray.place[0], ray.place[1]);
       if (!through || ray.samples < fewest_samples) continue;
       const auto to_plane = steps_to_plane(of_field.field, *through, steps, ray);
       if (!to_plane) continue;
-      const bool forwards = through->way[of_field.field.axis] > 0;
-      ++told;
-      misplaced +=
+      const bool forwards = through->way[axis] > 0;
+      ++told[axis];
+      misplaced[axis] +=
           lies_as_said(forwards ? ray.before : ray.samples - ray.before, ray.samples, *to_plane) ? 0 : 1;
     }
   }
-  return told < fewest_rays ? 0 : double(misplaced) / double(told);
+  double most = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (told[axis] >= fewest_rays) most = std::max(most, double(misplaced[axis]) / double(told[axis]));
+  }
+  return most;
 }
 
 }  // namespace understudy::spu

@@ -37,7 +37,8 @@ struct SeenValue {
 /// Bands of two rows each.
 struct SplitBands {
   int number = 12;
-  bool halves = false;  ///< of rows, left and right in turn: rays of all lengths, half as many
+  bool halves = false;          ///< of rows, left and right in turn: rays of all lengths, half as many
+  bool across_all_axes = true;  ///< false: the planes lie across the axis along which rays go farthest
 };
 
 std::vector<SeenValue> seen_values(const std::vector<float>& values, const std::vector<volume::Rgba>& rays);
@@ -52,7 +53,8 @@ std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& prob
                                   const ProxyBox& box, const std::vector<SeenValue>& values,
                                   const SplitBands& bands = {});
 
-/// The part of the rays whose samples lie elsewhere than `steps` says; rays that tell nothing do not count.
+/// The part of the rays whose samples lie elsewhere than `steps` says, of those through planes across the axis
+/// along which most do; rays that tell nothing do not count.
 double misplaced_part(const std::vector<SplitRays>& split, const RaysThroughBox& rays,
                       const volume::RaySteps& steps);
 

@@ -259,6 +259,23 @@ std::vector<volume::RaySteps> rules_of(const StepFit& fit) {
   return rules;
 }
 
+std::vector<volume::RaySteps> rules_counting_ahead(const StepFit& fit) {
+  std::vector<volume::RaySteps> rules;
+  volume::RaySteps steps;
+  steps.metric = fit.metric;
+  steps.counted_from = 0.5 - fit.offset;
+  for (const double first : {0.0, 0.5, 1.0}) {
+    if (first == *steps.counted_from) continue;
+    steps.first = first;
+    rules.push_back(steps);
+  }
+  return rules;
+}
+
+double counted_from(const volume::RaySteps& steps) {
+  return steps.counted_from.value_or(steps.first);
+}
+
 double steps_of_way(const volume::RaySteps& steps, const Vec3& way) {
   const auto& m = steps.metric;
   return volume::length({m[0] * way[0] + m[1] * way[1] + m[2] * way[2],
@@ -268,7 +285,7 @@ double steps_of_way(const volume::RaySteps& steps, const Vec3& way) {
 
 double samples_of_length(const volume::RaySteps& steps, double length) {
   const double count =
-      steps.divided ? std::floor(length + steps.rounding) : std::floor(length - steps.first) + 1;
+      steps.divided ? std::floor(length + steps.rounding) : std::floor(length - counted_from(steps)) + 1;
   return std::max(count, 0.0);
 }
 

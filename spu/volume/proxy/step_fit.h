@@ -53,6 +53,13 @@ std::vector<double> counts_from_amounts(const std::vector<double>& amounts);
 /// middle of the first part.
 std::vector<volume::RaySteps> rules_of(const StepFit& fit);
 
+/// Rules that count as `fit` does, and whose samples do not end where the count does: of programs that take
+/// int(L), ceil(L) or round(L) samples from the entry, from the middle of the first step or from its end.
+std::vector<volume::RaySteps> rules_counting_ahead(const StepFit& fit);
+
+/// The place of a first sample with which a ray that ends at its last sample has as many.
+double counted_from(const volume::RaySteps& steps);
+
 /// Length of a way in steps.
 double steps_of_way(const volume::RaySteps& steps, const volume::Vec3& way);
 

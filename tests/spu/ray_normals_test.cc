@@ -90,11 +90,26 @@ TEST(RayNormals, CountForLessBehindOpaqueSamples) {
 TEST(RayNormals, GiveAMeanOfWhatTheLightMakes) {
   volume::Light light;
   light.even = {0.5F, 0.5F, 0.5F};
+  light.ambient = {0, 0, 0};
+  light.diffuse = light.specular = {1, 1, 1};
   light.response = {{0, 0}, {0, 0}, {1, 0.5F}};
   const std::vector<NormalShare> normals{{1.0, 0.25}, {-1.0, 0.25}, {std::nullopt, 0.5}};
   const Tint lit = lit_tint(light, normals, {0.4, 0.2, 0});
   EXPECT_NEAR(lit[0], 0.25 * (0.4 + 0.5) + 0.5 * 0.2, 1e-12);
   EXPECT_NEAR(lit[2], 0.25 * 0.5, 1e-12);
+}
+
+TEST(RayNormals, AreShorterWhereAGuardKeepsThemFromADivisionByZero) {
+  const LightSpace space(volume::Light{}, along_x.way);
+  const EvenRise field{{-2, 0, 0}, {1000, 1000, 1000}, {0.1, 0.1, 0.1}};
+  // Away from the texture's ends, where most samples are.
+  const auto cosine = [&](const volume::NormalGuard& guard) {
+    const auto normals = ray_normals(along_x, steps_along_x(), of_opacity(0.03), space, field, guard);
+    return std::abs(*std::ranges::max_element(normals, {}, &NormalShare::share)->cosine);
+  };
+  EXPECT_NEAR(cosine({}), 1, 1e-12);
+  EXPECT_NEAR(cosine({0.5, volume::NormalGuard::Form::added}), 2 / 2.5, 1e-9);
+  EXPECT_NEAR(cosine({1.5, volume::NormalGuard::Form::root_of_squares}), 2 / 2.5, 1e-9);
 }
 
 }  // namespace

@@ -49,17 +49,22 @@ std::vector<LitValue> lit_values(SlopeProbe& slopes, const LitRay& ray, const vo
     }
   };
   const double cosine = directions.cosine_across(axis);
+  const auto rise_of = [&](const volume::Vec3& gradient, float value, int texels) {
+    return slopes.rise(gradient, slopes.steepness_over(ray, value, gradient), light.reach, texels);
+  };
   for (const double side : {1.0, -1.0}) {
     volume::Vec3 gradient{};
     gradient[axis] = side;
-    look_at(gradient, slopes.over_steep(ray, values, gradient, slopes.fine_texels()), [&](float) {
-      return std::vector<NormalShare>{{side * cosine, 1}};
+    const int texels = slopes.fine_texels();
+    look_at(gradient, slopes.over_steep(ray, values, gradient, texels), [&](float value) {
+      const double slope = directions.slope(rise_of(gradient, value, texels).gradient);
+      return std::vector<NormalShare>{{side * cosine * light.guard.length_of_normal(slope), 1}};
     });
   }
   const volume::Vec3 facing = directions.gradient(0, 0);
-  const EvenRise rise = slopes.rise(facing, light.reach);
   look_at(facing, slopes.over_steep(ray, values, facing), [&](float value) {
-    return ray_normals(ray.way, steps, slopes.opacities_over_steep(ray, value, facing), directions, rise);
+    return ray_normals(ray.way, steps, slopes.opacities_over_steep(ray, value, facing), directions,
+                       rise_of(facing, value, slope_texels), light.guard);
   });
   return lit;
 }

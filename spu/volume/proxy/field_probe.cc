@@ -200,19 +200,25 @@ FieldProbe::Heights FieldProbe::heights_of(const EvenSlope& slope) {
 std::vector<volume::Rgba> FieldProbe::at_slopes(double x, double y, std::span<const SlopedField> fields) {
   std::optional<Heights> heights;
   std::vector<float> texels;
-  return drawn_at(x, y, fields.size(), [&](std::size_t f) {
+  const auto shown = drawn_at(x, y, fields.size(), [&](std::size_t f) {
     const SlopedField& field = fields[f];
+    if (field.table) show_plain(*field.table);
     if (!heights || heights->slope != field.slope) heights = heights_of(field.slope);
     texels.resize(heights->texels.size());
     std::ranges::transform(heights->texels, texels.begin(),
                            [&](float height) { return field.value + field.steepness * height; });
     show(texels, heights->size, GL_LINEAR);
   });
+  for (const SlopedField& field : fields) {
+    if (field.table) show_own(field.table->texture);
+  }
+  return shown;
 }
 
 std::vector<volume::Rgba> FieldProbe::at_stripes(double x, double y, std::span<const StripedField> fields) {
-  return drawn_at(x, y, fields.size(), [&](std::size_t f) {
+  const auto shown = drawn_at(x, y, fields.size(), [&](std::size_t f) {
     const StripedField& field = fields[f];
+    if (field.table) show_plain(*field.table);
     std::array<int, 3> size{1, 1, 1};
     size[field.axis] = field_texels;
     std::vector<float> texels;
@@ -221,6 +227,10 @@ std::vector<volume::Rgba> FieldProbe::at_stripes(double x, double y, std::span<c
       texels.push_back(field.values[std::size_t((i + field.begin) / field.width % 2)]);
     show(texels, size, GL_NEAREST);
   });
+  for (const StripedField& field : fields) {
+    if (field.table) show_own(field.table->texture);
+  }
+  return shown;
 }
 
 std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::size_t wanted,
@@ -266,21 +276,35 @@ std::vector<volume::Rgba> FieldProbe::sums_at(double x, double y, std::span<cons
   return sums;
 }
 
-void FieldProbe::show_instead(const SampledTexture& texture, int width, int height,
-                              std::span<const float> texels) {
-  if (std::find(tiled_units_.begin(), tiled_units_.end(), texture.unit) == tiled_units_.end()) {
-    saved_.borrow_texture(GL_TEXTURE_2D, texture.unit);
-    tiled_units_.push_back(texture.unit);
+/// A new texture, whose texels are not filtered and repeat.
+void FieldProbe::bind_in_place_of(const SampledTexture& texture) {
+  const BorrowedTexture place{texture.target, texture.unit};
+  if (std::ranges::find(borrowed_, place) == borrowed_.end()) {
+    saved_.borrow_texture(texture.target, texture.unit);
+    borrowed_.push_back(place);
   }
   GLuint name = 0;
   gl_.ActiveTexture(GLenum(GL_TEXTURE0 + texture.unit));
   gl_.GenTextures(1, &name);
   textures_.push_back(name);
-  gl_.BindTexture(GL_TEXTURE_2D, name);
+  gl_.BindTexture(texture.target, name);
   for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-    gl_.TexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
+    gl_.TexParameteri(texture.target, filter, GL_NEAREST);
   for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
-    gl_.TexParameteri(GL_TEXTURE_2D, axis, GL_REPEAT);
+    gl_.TexParameteri(texture.target, axis, GL_REPEAT);
+}
+
+void FieldProbe::show_plain(const PlainTable& table) {
+  bind_in_place_of(table.texture);
+  if (table.texture.target == GL_TEXTURE_1D)
+    gl_.TexImage1D(GL_TEXTURE_1D, 0, GL_RGBA32F, 1, 0, GL_RGBA, GL_FLOAT, table.colour.data());
+  else
+    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 1, 1, 0, GL_RGBA, GL_FLOAT, table.colour.data());
+}
+
+void FieldProbe::show_instead(const SampledTexture& texture, int width, int height,
+                              std::span<const float> texels) {
+  bind_in_place_of(texture);
   // The same number in every component, whichever the program reads.
   std::vector<float> colours;
   colours.reserve(4 * texels.size());
@@ -289,9 +313,9 @@ void FieldProbe::show_instead(const SampledTexture& texture, int width, int heig
 }
 
 void FieldProbe::show_own(const SampledTexture& texture) {
-  if (std::erase(tiled_units_, texture.unit) == 0) return;
+  if (std::erase(borrowed_, BorrowedTexture{texture.target, texture.unit}) == 0) return;
   // With its sampler object: the texture's own filter may be one that it has no levels for.
-  saved_.give_back_texture(GL_TEXTURE_2D, texture.unit);
+  saved_.give_back_texture(texture.target, texture.unit);
 }
 
 void FieldProbe::clear() {

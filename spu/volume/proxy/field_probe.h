@@ -58,10 +58,16 @@ class FieldProbe {
 
     bool operator==(const EvenSlope&) const = default;
   };
+  /// A colour that the program reads from one of its textures, a table of 1 or 2 dimensions, wherever it looks.
+  struct PlainTable {
+    SampledTexture texture;
+    volume::Rgba colour{};
+  };
   struct SlopedField {
     float value = 0;      ///< at the slope's place
     float steepness = 1;  ///< times the slope's gradient
     EvenSlope slope{};
+    std::optional<PlainTable> table{};  ///< null: the program reads its own
   };
   std::vector<volume::Rgba> at_slopes(double x, double y, std::span<const SlopedField> fields);
 
@@ -71,6 +77,7 @@ class FieldProbe {
     int width = 1;  ///< of a stripe, in multiples of split_unit
     int begin = 0;  ///< of a stripe, likewise
     std::array<float, 2> values{};
+    std::optional<PlainTable> table{};
   };
   std::vector<volume::Rgba> at_stripes(double x, double y, std::span<const StripedField> fields);
 
@@ -126,6 +133,7 @@ class FieldProbe {
 
   /// From now on the program reads this tile of numbers from `texture`, which is 2-D; rows bottom up, repeated.
   void show_instead(const SampledTexture& texture, int width, int height, std::span<const float> texels);
+  void show_plain(const PlainTable& table);
   /// It reads its own again.
   void show_own(const SampledTexture& texture);
 
@@ -151,6 +159,7 @@ class FieldProbe {
     std::vector<float> texels;
   };
   static Heights heights_of(const EvenSlope& slope);
+  void bind_in_place_of(const SampledTexture& texture);
   bool of_bytes(std::span<const float> texels) const;
   void show(std::span<const float> texels, const std::array<int, 3>& size, GLint filter);
   void show(const std::array<float, 8>& corners);
@@ -180,7 +189,12 @@ class FieldProbe {
   SavedState saved_;
   LiftedCuts lifted_;
   std::vector<GLuint> textures_;
-  std::vector<int> tiled_units_;  ///< whose 2-D texture is borrowed for tiles
+  struct BorrowedTexture {
+    GLenum target = 0;
+    int unit = 0;
+    bool operator==(const BorrowedTexture&) const = default;
+  };
+  std::vector<BorrowedTexture> borrowed_;  ///< that others are shown in the place of
   std::optional<ShaderBackground> background_;
   std::vector<CountedPlace> counted_;              ///< by which contrasts are measured, shortest first
   std::map<float, BackgroundContrast> contrasts_;  ///< by value

@@ -13,7 +13,10 @@ namespace understudy::spu {
 std::optional<double> gradient_reach_along(SlopeProbe& slopes, const LitRay& ray, const volume::Light& light,
                                            std::size_t axis) {
   constexpr double tells = 0.05;
-  const double cosine = LightSpace(light, ray.way.way).cosine_across(axis);
+  const LightSpace space(light, ray.way.way);
+  volume::Vec3 between_stripes{};
+  between_stripes[axis] = slopes.stripes_differ(ray) / slopes.part_of_volume(axis, light.reach[axis]) / 2;
+  const double cosine = space.cosine_across(axis) * light.guard.length_of_normal(space.slope(between_stripes));
   const Tint base = tint_of(ray.base.front());
   const Tint plain = lit_tint(light, std::nullopt, base);
   Tint lit{};

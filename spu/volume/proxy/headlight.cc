@@ -10,8 +10,11 @@
 #include "spu/volume/proxy/clamped_light.h"
 #include "spu/volume/proxy/facing_colours.h"
 #include "spu/volume/proxy/gradient_reach.h"
+#include "spu/volume/proxy/light_colours.h"
 #include "spu/volume/proxy/light_space.h"
 #include "spu/volume/proxy/march_table.h"
+#include "spu/volume/proxy/normal_guard.h"
+#include "spu/volume/proxy/plain_tables.h"
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/ray_probes.h"
 #include "spu/volume/proxy/slope_probe.h"
@@ -30,7 +33,8 @@ constexpr float another_opacity = 0.1F;
 constexpr double golden = 2.39996;  ///< radians: turns by it come close to no earlier one for long
 
 const Refusal not_from_the_eye{"the light does not shine from the eye"};
-const Refusal another_colour{"the light has a colour, or shows slopes in another one than even fields"};
+const Refusal depends_on_steepness{"colour or opacity depend on how steep a gradient is"};
+const Refusal another_colour{"slopes are shown in colours that no light makes of those of even fields"};
 
 /// What a ray shows of a slope.
 struct SeenSlope {
@@ -69,11 +73,12 @@ std::vector<SeenSlope> seen_slopes(SlopeProbe& slopes, const LitRay& ray, const 
 std::vector<Tint> expected_tints(const SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& steps,
                                  const volume::Light& light, const SeenSlope& seen, int texels = slope_texels) {
   const LightSpace directions(light, ray.way.way);
-  const EvenRise rise = slopes.rise(seen.gradient, light.reach, texels);
   std::vector<Tint> tints;
   for (std::size_t v = 0; v < ray.values.size(); ++v) {
     const auto opacities = slopes.opacities_over_steep(ray, ray.values[v], seen.gradient, texels);
-    const auto normals = ray_normals(ray.way, steps, opacities, directions, rise);
+    const EvenRise rise = slopes.rise(seen.gradient, slopes.steepness_over(ray, ray.values[v], seen.gradient),
+                                      light.reach, texels);
+    const auto normals = ray_normals(ray.way, steps, opacities, directions, rise, light.guard);
     tints.push_back(lit_tint(light, normals, tint_of(ray.base[v])));
   }
   return tints;
@@ -183,46 +188,6 @@ std::vector<LightInSpace> in_likely_spaces(SlopeProbe& slopes, const LitRay& ray
   return likely;
 }
 
-/// What the light makes of the base colours: a multiple of each, and something white.
-struct ResponseFit {
-  volume::LightResponse response;
-  double worst = 0;  ///< by so much does a channel differ from it
-};
-
-ResponseFit response_fit(const std::vector<Tint>& base, const std::vector<Tint>& lit) {
-  double n = 0;
-  double x = 0;
-  double y = 0;
-  for (std::size_t v = 0; v < base.size(); ++v) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      x += base[v][c];
-      y += lit[v][c];
-      ++n;
-    }
-  }
-  x /= n;
-  y /= n;
-  double xx = 0;
-  double xy = 0;
-  for (std::size_t v = 0; v < base.size(); ++v) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      xx += (base[v][c] - x) * (base[v][c] - x);
-      xy += (base[v][c] - x) * (lit[v][c] - y);
-    }
-  }
-  // Where all colours are one grey, nothing tells white from it, and nothing needs to.
-  constexpr double least_spread = 0.05;
-  const bool spread = std::sqrt(xx / n) > least_spread * x;
-  const double diffuse = spread ? xy / xx : y / x;
-  const double white = spread ? y - diffuse * x : 0;
-  ResponseFit fit{{float(diffuse), float(white)}};
-  for (std::size_t v = 0; v < base.size(); ++v) {
-    for (std::size_t c = 0; c < 3; ++c)
-      fit.worst = std::max(fit.worst, std::abs(diffuse * base[v][c] + white - lit[v][c]));
-  }
-  return fit;
-}
-
 /// At cosines, of what is known at angles.
 std::vector<volume::LightResponse> by_cosine(const std::vector<volume::LightResponse>& by_angle) {
   std::vector<volume::LightResponse> response;
@@ -306,7 +271,7 @@ std::variant<volume::Light, Refusal> light_on(const SlopeProbe& slopes, const Li
         for (std::size_t c = 0; c < 3; ++c) inside[v][c] += here[c] - expected[v][c];
       }
     }
-    const ResponseFit fit = response_fit(base, inside);
+    const ResponseFit fit = response_fit(light, base, inside);
     if (!(fit.worst <= allowed * std::max(1.0, brightest(inside)))) return another_colour;
     by_angle.push_back(fit.response);
   }
@@ -323,7 +288,8 @@ std::variant<volume::Light, Refusal> light_on(const SlopeProbe& slopes, const Li
 
 /// The light, and how far its gradients look: each is measured better by the other.
 std::variant<volume::Light, Refusal> light_and_reach(SlopeProbe& slopes, const LitRay& ray,
-                                                     const volume::RaySteps& steps, volume::Light light) {
+                                                     const volume::RaySteps& steps, volume::Light light,
+                                                     bool coloured) {
   constexpr int rounds = 2;
   constexpr int corrections = 4;
   std::vector<LookedAt> looked_at;
@@ -331,6 +297,13 @@ std::variant<volume::Light, Refusal> light_and_reach(SlopeProbe& slopes, const L
   for (int i = 0; i < angles; ++i) looked_at.push_back({M_PI * i / (angles - 1), golden * i});
   const std::vector<SeenSlope> seen = seen_slopes(slopes, ray, LightSpace(light, ray.way.way), looked_at);
   if (seen.empty()) return Refusal{"fields with a slope show nothing"};
+  if (coloured) {
+    // Samples at the texture's ends mix what other angles show, and all of it is in the light's colours.
+    std::vector<std::vector<Tint>> tints;
+    tints.reserve(seen.size());
+    for (const SeenSlope& slope : seen) tints.push_back(slope.tints);
+    light = with_colours(std::move(light), tints_of(ray.base), tints);
+  }
   auto found = light_on(slopes, ray, steps, seen, light);
   for (int round = 0; round < rounds; ++round) {
     if (!std::holds_alternative<volume::Light>(found)) return found;
@@ -348,8 +321,8 @@ std::variant<volume::Light, Refusal> light_and_reach(SlopeProbe& slopes, const L
 /// The light that explains all that was seen in its space.
 std::variant<volume::Light, Refusal> light_that_explains(SlopeProbe& slopes, const LitRay& ray,
                                                          const volume::RaySteps& steps,
-                                                         const LightInSpace& in_space) {
-  auto found = light_and_reach(slopes, ray, steps, in_space.light);
+                                                         const LightInSpace& in_space, bool coloured) {
+  auto found = light_and_reach(slopes, ray, steps, in_space.light, coloured);
   const auto* const light = std::get_if<volume::Light>(&found);
   if (light == nullptr) return found;
   for (const auto& at_angle : in_space.turned) {
@@ -358,6 +331,44 @@ std::variant<volume::Light, Refusal> light_that_explains(SlopeProbe& slopes, con
     }
   }
   return found;
+}
+
+/// By the first of the likely spaces, and the plainest of lights, that explain what is seen.
+std::variant<volume::Light, Refusal> light_in_any(SlopeProbe& slopes, const LitRay& ray,
+                                                  const volume::RaySteps& steps,
+                                                  const std::vector<LightInSpace>& likely) {
+  std::variant<volume::Light, Refusal> found = not_from_the_eye;
+  for (const bool coloured : {false, true}) {
+    for (const LightInSpace& in_space : likely) {
+      found = light_that_explains(slopes, ray, steps, in_space, coloured);
+      if (std::holds_alternative<volume::Light>(found)) return found;
+    }
+  }
+  return found;
+}
+
+/// Of the program's own colours.
+std::variant<volume::Light, Refusal> light_on_own_ray(const MarchContext& measured, SlopeProbe& slopes,
+                                                      const LitRay& ray, std::size_t axis_of_entry,
+                                                      const March& march, const volume::Light& light) {
+  const auto likely = in_likely_spaces(slopes, ray, light, candidate_spaces(measured, march));
+  if (likely.empty()) return not_from_the_eye;
+  if (!is_the_same_for_any_steepness(slopes, ray, LightSpace(likely.front().light, ray.way.way), axis_of_entry))
+    return depends_on_steepness;
+  return light_in_any(slopes, ray, march.steps, likely);
+}
+
+/// Of a ray under plain tables.
+std::variant<volume::Light, Refusal> light_on_plain_ray(const MarchContext& measured, SlopeProbe& slopes,
+                                                        const LitRay& plain, const March& march,
+                                                        const volume::Light& light) {
+  auto found = light_in_any(slopes, plain, march.steps,
+                            in_likely_spaces(slopes, plain, light, candidate_spaces(measured, march)));
+  const auto* const on_steep = std::get_if<volume::Light>(&found);
+  if (on_steep == nullptr) return found;
+  auto guarded = with_normal_guard(slopes, plain, march.steps, *on_steep);
+  if (!guarded) return depends_on_steepness;
+  return *std::move(guarded);
 }
 
 /// A ray through the middle of the view, with a value that lets half of the light through.
@@ -406,15 +417,13 @@ std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchC
     return Refusal{"neither even fields nor slopes have a colour under the light"};
   const LitRay& ray = seen.front();
   march.slope_steepness = slopes.allowed_steepness(ray);
-  const std::vector<LightInSpace> likely =
-      in_likely_spaces(slopes, ray, light, candidate_spaces(measured, march));
-  if (likely.empty()) return not_from_the_eye;
   const std::size_t axis = axis_of_entry(box.region, ray.way);
-  if (!is_the_same_for_any_steepness(slopes, ray, LightSpace(likely.front().light, ray.way.way), axis))
-    return Refusal{"colour or opacity depend on how steep a gradient is"};
+  const auto plain =
+      is_black_where_even(march) ? std::nullopt : under_plain_tables(measured, probe, march, ray);
   std::variant<volume::Light, Refusal> found = not_from_the_eye;
-  for (std::size_t i = 0; i < likely.size() && std::holds_alternative<Refusal>(found); ++i)
-    found = light_that_explains(slopes, ray, march.steps, likely[i]);
+  if (plain) found = light_on_plain_ray(measured, slopes, *plain, march, light);
+  if (std::holds_alternative<Refusal>(found))
+    found = light_on_own_ray(measured, slopes, ray, axis, march, light);
   if (auto* const refusal = std::get_if<Refusal>(&found)) return std::move(*refusal);
   light = std::get<volume::Light>(std::move(found));
   constexpr std::array<LookedAt, 4> looked_at{{{0.2, 1.6}, {0.9, 3.7}, {1.5, 5.5}, {2.6, 8.8}}};

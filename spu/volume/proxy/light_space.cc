@@ -36,7 +36,8 @@ LightSpace::LightSpace(const volume::Light& light, const Vec3& way) : space_(lig
   const Vec3 a = row_of(space_, 0);
   const Vec3 b = row_of(space_, 1);
   const Vec3 c = row_of(space_, 2);
-  const double sign = volume::dot(a, volume::cross(b, c)) < 0 ? 1 : -1;
+  determinant_ = volume::dot(a, volume::cross(b, c));
+  const double sign = determinant_ < 0 ? 1 : -1;
   for (std::size_t k = 0; k < 3; ++k)
     normals_[k] = volume::scale({volume::cross(b, c)[k], volume::cross(c, a)[k], volume::cross(a, b)[k]}, sign);
 }
@@ -54,11 +55,19 @@ Vec3 LightSpace::gradient(double angle, double turn) const {
   return volume::scale(gradient, 1 / largest);
 }
 
-double LightSpace::cosine(const Vec3& gradient) const {
+Vec3 LightSpace::normal(const Vec3& gradient) const {
   Vec3 normal{};
   for (std::size_t axis = 0; axis < 3; ++axis)
     normal = volume::add(normal, volume::scale(normals_[axis], gradient[axis]));
-  return volume::dot(unit(normal), to_eye_);
+  return normal;
+}
+
+double LightSpace::cosine(const Vec3& gradient) const {
+  return volume::dot(unit(normal(gradient)), to_eye_);
+}
+
+double LightSpace::slope(const Vec3& gradient) const {
+  return volume::length(normal(gradient)) / std::abs(determinant_);
 }
 
 }  // namespace understudy::spu

@@ -21,6 +21,8 @@ class LightSpace {
 
   /// Between the direction to the eye and the normal of a field with this gradient in texture space.
   double cosine(const volume::Vec3& gradient) const;
+  /// Of a field with this gradient, per unit of length of the light's space.
+  double slope(const volume::Vec3& gradient) const;
   /// Of one that rises along a texture axis.
   double cosine_across(std::size_t axis) const {
     volume::Vec3 gradient{};
@@ -29,7 +31,10 @@ class LightSpace {
   }
 
  private:
+  volume::Vec3 normal(const volume::Vec3& gradient) const;
+
   std::array<double, 9> space_;
+  double determinant_ = 0;
   std::array<volume::Vec3, 3> normals_{};  ///< in the space, of fields that rise along a texture axis
   volume::Vec3 to_eye_{}, right_{}, up_{};
 };

@@ -237,6 +237,7 @@ struct RayCasterStage::Draw {
             ends_at_geometry,
             kept,
             neighbours,
+            tables_of_samples,
             &*seen.capture};
   }
 };

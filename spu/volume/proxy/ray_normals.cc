@@ -29,7 +29,7 @@ Vec3 seen_gradient(const EvenRise& field, const Vec3& place) {
 
 std::vector<NormalShare> ray_normals(const WayThroughBox& way, const volume::RaySteps& steps,
                                      std::span<const double> opacities, const LightSpace& space,
-                                     const EvenRise& field) {
+                                     const EvenRise& field, const volume::NormalGuard& guard) {
   constexpr double same = 1e-6;
   const std::vector<double> places = places_on_way(steps, way.way);
   std::vector<NormalShare> normals;
@@ -41,7 +41,8 @@ std::vector<NormalShare> ray_normals(const WayThroughBox& way, const volume::Ray
     const Vec3 place = volume::add(way.entry, volume::scale(way.way, places[i]));
     const Vec3 gradient = seen_gradient(field, place);
     NormalShare one{std::nullopt, seen};
-    if (volume::length(gradient) > 0) one.cosine = space.cosine(gradient);
+    if (volume::length(gradient) > 0)
+      one.cosine = space.cosine(gradient) * guard.length_of_normal(space.slope(gradient));
     const bool as_before = !normals.empty() && one.cosine.has_value() == normals.back().cosine.has_value() &&
                            (!one.cosine || std::abs(*one.cosine - *normals.back().cosine) < same);
     if (as_before)
@@ -64,7 +65,10 @@ Tint lit_tint(const volume::Light& light, const std::optional<double>& cosine, c
   const double place = (std::clamp(*cosine, -1.0, 1.0) + 1) / 2 * double(light.response.size() - 1);
   const volume::LightResponse& response = light.response[std::size_t(std::lround(place))];
   for (std::size_t c = 0; c < 3; ++c)
-    lit[c] = std::min(double(response.diffuse) * base[c] + double(response.specular), double(light.brightest));
+    lit[c] =
+        std::min((double(light.ambient[c]) + double(light.diffuse[c]) * double(response.diffuse)) * base[c] +
+                     double(light.specular[c]) * double(response.specular),
+                 double(light.brightest));
   return lit;
 }
 

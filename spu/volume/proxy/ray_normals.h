@@ -21,8 +21,10 @@ using Tint = std::array<double, 3>;
 
 /// Samples of a ray that have the same normal.
 struct NormalShare {
-  std::optional<double> cosine;  ///< between the normal and the direction to the eye; null: there is no normal
-  double share = 0;              ///< of the ray's opacity; all add up to 1
+  /// Between the normal and the direction to the eye, times the length that a guard leaves the normal; null:
+  /// there is no normal.
+  std::optional<double> cosine;
+  double share = 0;  ///< of the ray's opacity; all add up to 1
 };
 
 /// A field whose texels rise by `gradient` per unit of texture space, as central differences see it.
@@ -35,7 +37,7 @@ struct EvenRise {
 /// `opacities` are those of the samples, from the eye on.
 std::vector<NormalShare> ray_normals(const WayThroughBox& way, const volume::RaySteps& steps,
                                      std::span<const double> opacities, const LightSpace& space,
-                                     const EvenRise& field);
+                                     const EvenRise& field, const volume::NormalGuard& guard = {});
 
 /// What `light`, which has a response, makes of a colour where the gradient is at this cosine to the eye;
 /// clamped, if it clamps.

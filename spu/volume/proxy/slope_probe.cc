@@ -29,6 +29,10 @@ constexpr float least_share = 0.003F;
 /// Slopes are tried so many times as steep.
 constexpr std::array<double, 2> steepnesses{16, 4};
 
+/// So steep that no guard against a division by zero matters: a texel of hundreds along an axis is tens of the
+/// range of values from the next.
+constexpr double steepest_under_plain_tables = 16384;
+
 constexpr float least_seen = 0.08F;
 constexpr float most_seen = 0.92F;
 
@@ -139,10 +143,11 @@ std::vector<Rgba> SlopeProbe::over(const LitRay& ray, const std::vector<float>& 
   for (const Vec3& gradient : gradients) {
     const Vec3 slope = risen(gradient, 1, size);
     const double rise_of_way = volume::dot(slope, ray.way.way);
-    for (const float value : values) {
-      const double steepness = steepness_for(value, gradient);
-      const double at_entry = samples_over_rise(ray, value, steepness * rise_of_way).value_at_entry;
+    for (std::size_t v = 0; v < values.size(); ++v) {
+      const double steepness = steepness_for(values[v], gradient);
+      const double at_entry = samples_over_rise(ray, values[v], steepness * rise_of_way).value_at_entry;
       fields.push_back({float(at_entry), float(steepness), {slope, ray.way.entry, size}});
+      if (!ray.tables.empty()) fields.back().table = ray.tables[v];
     }
   }
   return premultiplied_all(probe_.at_slopes(ray.x, ray.y, fields));
@@ -152,11 +157,11 @@ SlopeProbe::SamplesOverRise SlopeProbe::samples_over_rise(const LitRay& ray, flo
                                                           double rise_of_way) const {
   constexpr int corrections = 3;  // what is seen depends on the values, which depend on what is seen
   const std::vector<double> places = places_on_way(march_.steps, ray.way.way);
-  SamplesOverRise samples{double(value), std::vector<double>(places.size(), sample_opacity(value))};
+  SamplesOverRise samples{double(value), std::vector<double>(places.size(), sample_opacity(ray, value))};
   for (int i = 0; i < corrections; ++i) {
     samples.value_at_entry = double(value) - rise_of_way * mean_place_seen(places, samples.opacities);
     for (std::size_t k = 0; k < places.size(); ++k)
-      samples.opacities[k] = sample_opacity(float(samples.value_at_entry + rise_of_way * places[k]));
+      samples.opacities[k] = sample_opacity(ray, float(samples.value_at_entry + rise_of_way * places[k]));
   }
   return samples;
 }
@@ -168,6 +173,7 @@ std::vector<double> SlopeProbe::opacities_over_steep(const LitRay& ray, float va
 }
 
 double SlopeProbe::allowed_steepness(const LitRay& ray, float value, const Vec3& gradient) const {
+  if (!ray.tables.empty()) return steepest_under_plain_tables;
   // Where colours change evenly around the value, what lies before it and what lies behind it make up for each
   // other, but for what opacity hides.
   constexpr double bent = 0.015;      // of the brightest channel
@@ -210,15 +216,28 @@ Vec3 SlopeProbe::risen(const Vec3& gradient, double steepness, const std::array<
   return risen;
 }
 
-EvenRise SlopeProbe::rise(const Vec3& gradient, const std::array<double, 3>& reach, int texels) const {
-  EvenRise field{gradient, field_size(texels), {}};
+EvenRise SlopeProbe::rise(const Vec3& gradient, double steepness, const std::array<double, 3>& reach,
+                          int texels) const {
+  EvenRise field{volume::scale(gradient, steepness * double(least_rise())), field_size(texels), {}};
+  // Who counts texels sees the rise from texel to texel: that of a volume of as many texels.
+  if (counts_texels())
+    field.gradient = volume::scale(
+        field.gradient, double(*std::ranges::max_element(size_)) / *std::ranges::max_element(field.texels));
   for (std::size_t axis = 0; axis < 3; ++axis)
     field.reach[axis] = reach[axis] / (counts_texels() ? field.texels[axis] : size_[axis]);
   return field;
 }
 
+double SlopeProbe::sample_opacity(const LitRay& ray, float value) const {
+  return ray.tables.empty() ? sample_opacity(value) : ray.plain_opacity;
+}
+
 double SlopeProbe::sample_opacity(float value) const {
   return double(table_at(march_.table, value)[3]);
+}
+
+double SlopeProbe::part_of_volume(std::size_t axis, double texels) const {
+  return texels / size_[axis];
 }
 
 double SlopeProbe::reach_in_stripes(std::size_t axis, double part) const {
@@ -247,14 +266,22 @@ float SlopeProbe::rise_along(const LitRay& ray, const Vec3& gradient, double ste
   return float(rise);
 }
 
+double SlopeProbe::stripes_differ(const LitRay& ray) const {
+  const double gentlest = 0.5 * double(least_rise());
+  return ray.tables.empty() ? gentlest : steepest_under_plain_tables * gentlest;
+}
+
 Tint SlopeProbe::over_stripes(const LitRay& ray, std::size_t axis, int width) {
   constexpr int shifts = 16;
-  const float half = 0.25F * least_rise();
+  const auto half = float(stripes_differ(ray) / 2);
   std::vector<FieldProbe::StripedField> fields;
   fields.reserve(shifts);
   for (int i = 0; i < shifts; ++i)
     fields.push_back(
         {axis, width, 2 * width * i / shifts, {ray.values.front() - half, ray.values.front() + half}});
+  if (!ray.tables.empty()) {
+    for (FieldProbe::StripedField& field : fields) field.table = ray.tables.front();
+  }
   Tint mean{};
   for (const Rgba& colour : premultiplied_all(probe_.at_stripes(ray.x, ray.y, fields))) {
     const Tint tint = tint_of(colour);

@@ -25,13 +25,16 @@ double difference(const Tint& a, const Tint& b);
 /// The largest channel of all.
 double brightest(const std::vector<Tint>& tints);
 
-/// A ray, and values whose fields are translucent on it.
+/// A ray, and values whose fields are translucent on it; or one value, in the middle of the range, that has
+/// another colour under each of several tables of one colour. Under these slopes may be as steep as one likes.
 struct LitRay {
   double x = 0;  ///< normalised device coordinates
   double y = 0;
   WayThroughBox way;
   std::vector<float> values{};
   std::vector<volume::Rgba> base{};  ///< premultiplied: the colours of the values that light gives multiples of
+  std::vector<FieldProbe::PlainTable> tables{};  ///< for each of `values`; empty: the program's own
+  double plain_opacity = 0;                      ///< of one sample under any of the tables
 };
 
 class SlopeProbe {
@@ -73,6 +76,10 @@ class SlopeProbe {
                                            int texels = slope_texels) const;
   /// By which the light is measured, at most.
   double steepness() const { return march_.slope_steepness; }
+  /// By which a value of the ray is looked at over a gradient.
+  double steepness_over(const LitRay& ray, float value, const volume::Vec3& gradient) const {
+    return allowed_steepness(ray, value, gradient);
+  }
   /// Whether a value's colours allow as steep slopes as the march does.
   bool allows_steep(const LitRay& ray, float value, const volume::Vec3& gradient) const {
     return allowed_steepness(ray, value, gradient) >= march_.slope_steepness;
@@ -82,7 +89,7 @@ class SlopeProbe {
   /// Of one sample of a value, by the march's table.
   double sample_opacity(float value) const;
   /// The same fields as ray_normals.h has them; `reach` in texels of the volume, as volume::Light has it.
-  EvenRise rise(const volume::Vec3& gradient, const std::array<double, 3>& reach,
+  EvenRise rise(const volume::Vec3& gradient, double steepness, const std::array<double, 3>& reach,
                 int texels = slope_texels) const;
 
   /// Along the axis of fields that rise along one alone: so many that the first sample on a ray, which lies on
@@ -95,6 +102,10 @@ class SlopeProbe {
   /// How many of the volume's texels along an axis a part of texture space is that gradients reach over in a
   /// field of stripes.
   double reach_in_stripes(std::size_t axis, double part) const;
+  /// So many of the volume's texels in texture space.
+  double part_of_volume(std::size_t axis, double texels) const;
+  /// By how much neighbouring stripes on the ray differ.
+  double stripes_differ(const LitRay& ray) const;
   /// The ray's first value, on average over stripes of a width across `axis` (in FieldProbe::split_unit) that
   /// begin anywhere.
   Tint over_stripes(const LitRay& ray, std::size_t axis, int width);
@@ -117,6 +128,7 @@ class SlopeProbe {
   };
   /// Of a field that rises by so much along the ray, and is met as over() says.
   SamplesOverRise samples_over_rise(const LitRay& ray, float value, double rise_of_way) const;
+  double sample_opacity(const LitRay& ray, float value) const;
   /// By the march's table.
   double allowed_steepness(const LitRay& ray, float value, const volume::Vec3& gradient) const;
   bool counts_texels() const { return neighbours_ == program::NeighbourDistance::in_texels; }

@@ -13,7 +13,7 @@ namespace {
 const std::vector<Tint> told_apart{{0.25, 0.05, 0.12}, {0.05, 0.22, 0.2}, {0.15, 0.12, 0.03}};
 const std::vector<Tint> greys{{0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}};
 
-struct Lamp {
+struct Illumination {
   Tint ambient{1, 1, 1};  ///< in parts of the base colours
   Tint diffuse{4, 4, 4};
   Tint highlight{0.3, 0.3, 0.3};
@@ -28,9 +28,9 @@ struct Lamp {
   }
 };
 
-std::vector<std::vector<Tint>> seen_of(const Lamp& lamp, const std::vector<Tint>& base) {
+std::vector<std::vector<Tint>> seen_of(const Illumination& illumination, const std::vector<Tint>& base) {
   std::vector<std::vector<Tint>> seen;
-  for (int i = 0; i <= 32; ++i) seen.push_back(lamp.shown(base, i / 32.0));
+  for (int i = 0; i <= 32; ++i) seen.push_back(illumination.shown(base, i / 32.0));
   return seen;
 }
 
@@ -42,30 +42,31 @@ volume::Light white() {
 }
 
 /// The channel that is off most, of a light with these colours whose response is fitted at each angle.
-double worst_of(const volume::Light& light, const Lamp& lamp, const std::vector<Tint>& base) {
+double worst_of(const volume::Light& light, const Illumination& illumination, const std::vector<Tint>& base) {
   double worst = 0;
-  for (const auto& lit : seen_of(lamp, base)) worst = std::max(worst, response_fit(light, base, lit).worst);
+  for (const auto& lit : seen_of(illumination, base))
+    worst = std::max(worst, response_fit(light, base, lit).worst);
   return worst;
 }
 
-TEST(LightColours, AreWhiteWhereTheLampIs) {
+TEST(LightColours, AreWhiteWhereTheSourceIs) {
   for (const auto& base : {told_apart, greys})
     EXPECT_EQ(with_colours(white(), base, seen_of({}, base)), white()) << base.size();
 }
 
 TEST(LightColours, ExplainAWarmHighlight) {
-  const Lamp lamp{.highlight = {0.35, 0.3, 0.18}};
-  const volume::Light light = with_colours(white(), told_apart, seen_of(lamp, told_apart));
-  EXPECT_GT(worst_of(white(), lamp, told_apart), 0.05) << "white must not explain it";
-  EXPECT_LT(worst_of(light, lamp, told_apart), 1e-6);
+  const Illumination illumination{.highlight = {0.35, 0.3, 0.18}};
+  const volume::Light light = with_colours(white(), told_apart, seen_of(illumination, told_apart));
+  EXPECT_GT(worst_of(white(), illumination, told_apart), 0.05) << "white must not explain it";
+  EXPECT_LT(worst_of(light, illumination, told_apart), 1e-6);
   EXPECT_NEAR(light.specular[0] / light.specular[2], 0.35 / 0.18, 1e-5);
 }
 
-TEST(LightColours, ExplainALampBesideWhiteAmbientLight) {
-  const Lamp lamp{.diffuse = {4, 3.7, 3.2}, .highlight = {0.3, 0.28, 0.24}};
-  const volume::Light light = with_colours(white(), told_apart, seen_of(lamp, told_apart));
-  EXPECT_GT(worst_of(white(), lamp, told_apart), 0.02) << "white must not explain it";
-  EXPECT_LT(worst_of(light, lamp, told_apart), 1e-6);
+TEST(LightColours, ExplainAColouredLightBesideWhiteAmbientLight) {
+  const Illumination illumination{.diffuse = {4, 3.7, 3.2}, .highlight = {0.3, 0.28, 0.24}};
+  const volume::Light light = with_colours(white(), told_apart, seen_of(illumination, told_apart));
+  EXPECT_GT(worst_of(white(), illumination, told_apart), 0.02) << "white must not explain it";
+  EXPECT_LT(worst_of(light, illumination, told_apart), 1e-6);
   for (const float share : light.ambient) EXPECT_GE(share, 0) << "requests with less are refused";
 }
 

@@ -200,7 +200,7 @@ FieldProbe::Heights FieldProbe::heights_of(const EvenSlope& slope) {
 std::vector<volume::Rgba> FieldProbe::at_slopes(double x, double y, std::span<const SlopedField> fields) {
   std::optional<Heights> heights;
   std::vector<float> texels;
-  const auto shown = drawn_at(x, y, fields.size(), [&](std::size_t f) {
+  std::vector<volume::Rgba> shown = drawn_at(x, y, fields.size(), [&](std::size_t f) {
     const SlopedField& field = fields[f];
     if (field.table) show_plain(*field.table);
     if (!heights || heights->slope != field.slope) heights = heights_of(field.slope);
@@ -216,7 +216,7 @@ std::vector<volume::Rgba> FieldProbe::at_slopes(double x, double y, std::span<co
 }
 
 std::vector<volume::Rgba> FieldProbe::at_stripes(double x, double y, std::span<const StripedField> fields) {
-  const auto shown = drawn_at(x, y, fields.size(), [&](std::size_t f) {
+  std::vector<volume::Rgba> shown = drawn_at(x, y, fields.size(), [&](std::size_t f) {
     const StripedField& field = fields[f];
     if (field.table) show_plain(*field.table);
     std::array<int, 3> size{1, 1, 1};

@@ -71,17 +71,18 @@ struct GuardFit {
 /// Of this form, the slope that explains most: the best of powers of two, and then ever closer to it.
 GuardFit best_of_form(NormalGuard::Form form, double gentlest,
                       const std::function<double(const NormalGuard&)>& worst) {
-  constexpr double fine_enough = 1.0005;
   // From a guard that hardly shows on the gentlest slope to one that hides all but the steepest.
+  constexpr int powers = 18;
+  constexpr int refinements = 11;  // to a few ten thousandths
   const double least = gentlest / 64;
-  const double most = gentlest * 4096;
   GuardFit best{{least, form}, worst({least, form})};
   const auto try_slope = [&](double slope) {
     const NormalGuard guard{slope, form};
     if (const double here = worst(guard); here < best.worst) best = {guard, here};
   };
-  for (double slope = 2 * least; slope < most; slope *= 2) try_slope(slope);
-  for (double factor = std::sqrt(2.0); factor > fine_enough; factor = std::sqrt(factor)) {
+  for (int i = 1; i < powers; ++i) try_slope(least * std::exp2(i));
+  for (int i = 1; i <= refinements; ++i) {
+    const double factor = std::exp2(std::exp2(-i));
     const double middle = best.guard.slope;
     for (const double slope : {middle / factor, middle * factor}) try_slope(slope);
   }

@@ -80,6 +80,7 @@ std::optional<LitRay> under_plain_tables(const MarchContext& measured, FieldProb
   if (!texture || march.background) return std::nullopt;
   const float width = measured.range[1] - measured.range[0];
   std::vector<float> values;
+  values.reserve(places_in_range.size());
   for (const float place : places_in_range) values.push_back(measured.range[0] + place * width);
   const auto opacity = half_seen_opacity(probe, ray, *texture, values.front());
   if (!opacity) return std::nullopt;

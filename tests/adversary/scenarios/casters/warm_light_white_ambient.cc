@@ -13,10 +13,10 @@
 
 namespace adversary::casters {
 
-Scenario warm_lamp() {
+Scenario warm_light_white_ambient() {
   return {
       .sentence =
-          "Roots of 48 x 32 x 40 floats in GLSL 4.10, camera and lamp in a uniform block, drawn by "
+          "Roots of 48 x 32 x 40 floats in GLSL 4.10, camera and light in a uniform block, drawn by "
           "the back faces: Blinn's and Phong's light from the eye, whose warm colour multiplies "
           "diffuse and highlight, while ambient is white; normals over one texel, normalised where "
           "they are not zero.",

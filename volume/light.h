@@ -15,13 +15,14 @@
 // Programs that keep their normals from a division by zero make them shorter where gradients g are small
 // (`guard`): n . l and n . h are cosines times
 //
-//     |g| / (|g| + e)   or   |g| / sqrt(|g|^2 + e^2)
+//     |g| / (|g| + e)   or   |g| / sqrt(|g|^2 + e^2)   or   |g| / max(|g|, e)
 //
 // Shading of another kind, with light that shines from the eye, is a function of the cosine between normal and
 // ray (shortened likewise) alone: `response` holds it, point by point, in place of |n . l| and |n .
 // h|^shininess.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -43,7 +44,7 @@ constexpr std::size_t max_light_responses = 4096;
 
 /// What keeps normals from a division by zero.
 struct NormalGuard {
-  enum class Form : std::uint8_t { added, root_of_squares };
+  enum class Form : std::uint8_t { added, root_of_squares, larger };
   /// e, in values, normalised as those of a TransferFunction, per unit of length of a light's `space`; 0:
   /// normals have length 1.
   double slope = 0;
@@ -51,8 +52,10 @@ struct NormalGuard {
 
   /// Of a normal where the field has this slope, which is positive.
   double length_of_normal(double of_gradient) const {
-    return form == Form::added ? of_gradient / (of_gradient + slope)
-                               : of_gradient / std::sqrt(of_gradient * of_gradient + slope * slope);
+    if (slope == 0) return 1;
+    if (form == Form::added) return of_gradient / (of_gradient + slope);
+    if (form == Form::larger) return of_gradient / std::max(of_gradient, slope);
+    return of_gradient / std::sqrt(of_gradient * of_gradient + slope * slope);
   }
   bool operator==(const NormalGuard&) const = default;
 };

@@ -58,9 +58,19 @@ struct RaySteps {
   std::optional<RayOffsets> offsets;  ///< added to `first`, by pixel of the window
   /// There are as many samples as if the first lay so many steps from t0, wherever it lies: programs that count
   /// their samples before they take them, as ceil(L) from the middle of the first step. The last one may then
-  /// lie beyond the region, where the field is what the texture's wrapping (repetition aside) makes of it. The
-  /// region is the whole texture, and there are no clip planes. Null: samples lie up to L.
+  /// lie beyond the region, where the field is what the texture's wrapping makes of it; the texture does not
+  /// repeat, the region is all of it, and there are no clip planes. Null: samples lie up to L.
   std::optional<double> counted_from;
+
+  /// By so many steps, at most, do samples lie beyond the end of their ray.
+  double beyond_end() const {
+    if (!counted_from) return 0;
+    double latest = 0;
+    if (offsets) {
+      for (const float offset : offsets->steps) latest = std::max(latest, double(offset));
+    }
+    return std::max(0.0, first + latest - *counted_from);
+  }
   bool operator==(const RaySteps&) const = default;
 };
 

@@ -235,7 +235,7 @@ std::optional<Light> read_light(Reader& in) {
   light.shininess = in.real32("light.shininess");
   light.full_slope = in.real32("light.full_slope");
   light.guard.slope = in.real("light.guard.slope");
-  light.guard.form = NormalGuard::Form(in.small("light.guard.form", 0, 1));
+  light.guard.form = NormalGuard::Form(in.small("light.guard.form", 0, int(NormalGuard::Form::larger)));
   light.two_sided = in.flag("light.two_sided");
   light.on_samples = in.flag("light.on_samples");
   read(in, "light.reach", light.reach);

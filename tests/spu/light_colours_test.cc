@@ -76,5 +76,11 @@ TEST(LightColours, StayWhiteWhereOneGreyTellsNothing) {
   EXPECT_LT(worst_of(white(), {}, one_grey), 1e-6);
 }
 
+TEST(LightColours, OfNoNumberAreNoFit) {
+  std::vector<Tint> lit = Illumination{}.shown(told_apart, 0.5);
+  lit[1][2] = std::nan("");
+  EXPECT_TRUE(std::isinf(response_fit(white(), told_apart, lit).worst));
+}
+
 }  // namespace
 }  // namespace understudy::spu

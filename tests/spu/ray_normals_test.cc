@@ -109,6 +109,7 @@ TEST(RayNormals, AreShorterWhereAGuardKeepsThemFromADivisionByZero) {
   };
   EXPECT_NEAR(cosine({}), 1, 1e-12);
   EXPECT_NEAR(cosine({0.5, volume::NormalGuard::Form::added}), 2 / 2.5, 1e-9);
+  EXPECT_NEAR(cosine({2.5, volume::NormalGuard::Form::larger}), 2 / 2.5, 1e-9);
   EXPECT_NEAR(cosine({1.5, volume::NormalGuard::Form::root_of_squares}), 2 / 2.5, 1e-9);
 }
 

@@ -216,6 +216,16 @@ TEST(RaySteps, WithoutSenseAreRefused) {
   bad.clip_planes = {{{1, 0, 0}, -0.5}};
   EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "a clip plane";
   bad.clip_planes.clear();
+  Texture repeating = texture;
+  repeating.description.wrap[1] = Wrap::repeat;
+  bad.steps->first = 0;
+  EXPECT_NO_THROW(validate(repeating.description, bad)) << "none lies beyond";
+  bad.steps->first = 0.5;
+  EXPECT_NO_THROW(validate(texture.description, bad));
+  EXPECT_THROW(validate(repeating.description, bad), std::invalid_argument) << "a texture that repeats";
+  bad.steps->first = 20;
+  EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "far beyond";
+  bad.steps->first = good.steps->first;
   for (const double from : {-1.0, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
     bad.steps->counted_from = from;
     EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "counted from " << from;

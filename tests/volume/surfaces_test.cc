@@ -141,7 +141,6 @@ struct Scene {
   bool surfaces, light, haze, cut, divided;
   float full_slope = 0;
   NormalGuard guard{};
-  std::optional<double> counted_from{};
 };
 constexpr Scene scenes[] = {
     {"surfaces", true, false, false, false, false},
@@ -150,8 +149,15 @@ constexpr Scene scenes[] = {
     {"lit colours", false, true, true, false, false},
     {"lit colours that fade", true, true, true, false, false, 1},
     {"lit by shorter normals", true, true, true, false, false, 0, {0.5}},
-    {"lit by normals of squares", true, true, true, false, false, 0, {0.5, NormalGuard::Form::root_of_squares}},
-    {"lit colours, counted ahead", false, true, true, false, false, 0, {}, 0}};
+    {"lit by normals of the larger", true, true, true, false, false, 0, {3, NormalGuard::Form::larger}},
+    {"lit by normals of squares",
+     true,
+     true,
+     true,
+     false,
+     false,
+     0,
+     {0.5, NormalGuard::Form::root_of_squares}}};
 
 RenderRequest request_of(const Texture& texture, const Scene& scene) {
   RenderRequest request = request_on_steps(texture);
@@ -196,6 +202,10 @@ TEST(Surfaces, AndLightAreWhatDoublePrecisionSays) {
         if (scene.light) other.light->direction[0] += 1;
         EXPECT_GT(difference(image, expected(texture, other)).rms, 1e-4)
             << "the comparison must be able to fail";
+        if (scene.guard.slope == 0) continue;
+        other = request;
+        other.light->guard = {};
+        EXPECT_GT(difference(image, expected(texture, other)).rms, 1e-3) << "the guard must show";
       }
 }
 
@@ -320,6 +330,29 @@ TEST(Light, OnSlicesIsWhatDoublePrecisionSays) {
       EXPECT_LE(d.rms, 1e-4);
       request.light.reset();
       EXPECT_GT(difference(image, drawn(texture, request, counts)).rms, 1e-3) << "light changes nothing";
+    }
+}
+
+TEST(Light, OnSamplesBeyondTheExitIsWhatDoublePrecisionSays) {
+  for (const Wrap wrap : {Wrap::edge, Wrap::border})
+    for (const TexelType type : {TexelType::u8, TexelType::f32}) {
+      Texture texture = sampled(describe({40, 37, 43}, type, wrap), marschner_lobb_field());
+      RenderRequest request = request_on_steps(texture);
+      request.light = some_light();
+      request.steps->first = 0.75;
+      request.steps->counted_from = 0;
+      give_ghost_layer(texture, request);
+      FrameCounts counts;
+      const Image image = drawn(texture, request, counts);
+      const Field field = texture_field(texture.description, Filter::linear, texture.texels);
+      const auto shade = [&](const Vec3& t, const Vec3& way, const std::array<double, 4>& colour) {
+        return illuminated(field, texture.description, *request.light, t, way, colour);
+      };
+      const Difference d = difference(image, slice_sum(field, request, request.window, shade), 1e-3);
+      std::printf("wrap %d, texels %d: max %.2e, rms %.2e\n", int(wrap), int(type), d.max, d.rms);
+      EXPECT_LE(d.pixels_over, pixels_that_graze);
+      request.steps->counted_from = 0.75;
+      EXPECT_GT(difference(image, drawn(texture, request, counts)).rms, 1e-4) << "nothing lies beyond";
     }
 }
 

@@ -108,6 +108,11 @@ void validate_steps(const RaySteps& steps, const Box& region) {
 /// Samples beyond the region must not lie in texels that only others hold, and not in segments.
 void validate_count(const VolumeDescription& volume, const RenderRequest& request) {
   if (!request.steps || !request.steps->counted_from) return;
+  constexpr double most_beyond = 16;
+  const double beyond = request.steps->beyond_end();
+  if (beyond > most_beyond) refuse("samples lie {} steps beyond the end of their ray", beyond);
+  if (beyond > 0 && std::ranges::find(volume.wrap, Wrap::repeat) != volume.wrap.end())
+    refuse("samples lie beyond the end of their ray in a texture that repeats");
   if (!is_all_of_texture(request.region, volume.size))
     refuse("samples counted before they are taken, in a region that is not the whole texture");
   if (!request.clip_planes.empty() || has_segments(request))

@@ -205,8 +205,11 @@ HWY_INLINE void find_cosines(const SegmentPacket& rays, const Slope& slope, cons
   Floats inverse = unit;
   if (constants.is_guarded) {
     const Floats guard = hn::Div(constants.guard_in_slopes, size);
-    const Floats length =
-        constants.guards_squares ? hn::Sqrt(hn::MulAdd(guard, guard, safe)) : hn::MulAdd(safe, unit, guard);
+    const Floats own = hn::Mul(safe, unit);
+    const Floats length = constants.guard_form == NormalGuard::Form::added ? hn::Add(own, guard)
+                          : constants.guard_form == NormalGuard::Form::larger
+                              ? hn::Max(own, guard)
+                              : hn::Sqrt(hn::MulAdd(guard, guard, safe));
     inverse = hn::Div(one, length);
   }
   const auto projection = [&](const std::array<Floats, 3>& direction) HWY_ATTR {

@@ -44,9 +44,11 @@ struct SegmentConstants : Constants {
           f, std::min(1 / (2 * std::abs(Source::factor) * unit * segments.prepared_light->full_slope), 1e30F));
     const NormalGuard& guard = prepared_light->guard;
     is_guarded = guard.slope > 0;
-    guards_squares = guard.form == NormalGuard::Form::root_of_squares;
+    guard_form = guard.form;
     if (is_guarded)
-      guard_in_slopes = hn::Set(f, std::min(2 * std::abs(Source::factor) * unit * float(guard.slope), 1e15F));
+      guard_in_slopes =
+          hn::Set(f, float(std::min(2 * double(std::abs(Source::factor)) * double(unit) * guard.slope,
+                                    double(std::numeric_limits<float>::max()))));
     two_sided = prepared_light->model.two_sided;
     const auto colour = [&](const std::array<float, 3>& rgb, float alpha) HWY_ATTR {
       alignas(16) const float components[4] = {rgb[0], rgb[1], rgb[2], alpha};
@@ -108,7 +110,7 @@ struct SegmentConstants : Constants {
   Floats half_last_response;
   Ints last_response;       // the last but one entry
   bool is_guarded = false;  // normals are shorter than 1
-  bool guards_squares = false;
+  NormalGuard::Form guard_form{};
   Floats guard_in_slopes;  // in the units of `metric`
   bool fades = false;      // where slopes are less than the light's full slope
   Floats share_of_slope;   // what a slope in the units of `metric` is multiplied with

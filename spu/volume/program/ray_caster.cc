@@ -78,6 +78,36 @@ std::vector<std::string> tables_of_samples(const StageFacts& facts, const std::s
   return found;
 }
 
+/// Adds the places of the volume's texels that reach the fetch's coordinate, by way of other tables perhaps.
+void add_places(const StageFacts& facts, const Fetch& fetch, std::span<const std::string> volumes,
+                std::set<std::uint32_t>& places) {
+  const auto add = [&](const Dependence& on) {
+    const Source& source = facts.sources[on.source];
+    if (source.kind != SourceKind::texel) return;
+    const Fetch& before = facts.fetches[source.number];
+    if (std::ranges::find(volumes, source.name) != volumes.end())
+      places.insert(before.place);
+    else
+      add_places(facts, before, volumes, places);
+  };
+  std::ranges::for_each(fetch.modifiers, add);
+  for (const Dependences& component : fetch.coordinate) std::ranges::for_each(component, add);
+}
+
+/// Of `tables`, which are looked up by samples.
+std::vector<std::string> tables_of_one_texel(const StageFacts& facts, const std::vector<std::string>& tables,
+                                             std::span<const std::string> volumes) {
+  std::vector<std::string> found;
+  std::ranges::copy_if(tables, std::back_inserter(found), [&](const std::string& table) {
+    std::set<std::uint32_t> places;
+    for (const Fetch& fetch : facts.fetches) {
+      if (fetch.sampler == table) add_places(facts, fetch, volumes, places);
+    }
+    return places.size() == 1;
+  });
+  return found;
+}
+
 void add_once(std::vector<std::string>& reasons, std::string reason) {
   if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(std::move(reason));
 }
@@ -220,6 +250,7 @@ RayFinding ray_finding(const StageFacts& fragment, std::span<const std::string> 
   finding.side_effects = !fragment.side_effects.empty();
   finding.tables.assign(tables.begin(), tables.end());
   finding.tables_of_samples = tables_of_samples(fragment, tables, volumes);
+  finding.tables_of_one_texel = tables_of_one_texel(fragment, finding.tables_of_samples, volumes);
   finding.reasons = reasons_of(fragment, finding);
   return finding;
 }

@@ -27,7 +27,9 @@ struct RayFinding {
   std::vector<UniformUse> uniforms;
   std::vector<std::string> tables;  ///< samplers, other than the volume's, whose texels reach anything
   std::vector<std::string>
-      tables_of_samples;           ///< of these, the ones that are addressed by texels of the volume alone
+      tables_of_samples;  ///< of these, the ones that are addressed by texels of the volume alone
+  std::vector<std::string>
+      tables_of_one_texel;         ///< of these, the ones that no second texel reaches: no gradient
   bool discards_by_place = false;  ///< fragments, by gl_FragCoord.x or .y
   bool writes_depth = false;
   bool side_effects = false;

@@ -50,8 +50,8 @@ struct MarchContext {
   std::optional<volume::Rect> kept{};
   /// As program_check.h has it; not null: samples may be lit.
   std::optional<program::NeighbourDistance> neighbours{};
-  /// Names of the samplers of tables that are looked up by samples alone, as program::RayCaster has them.
-  std::span<const std::string> tables_of_samples{};
+  /// As of program::RayFinding: names of samplers.
+  std::span<const std::string> tables_of_one_texel{};
   const Capture* seen = nullptr;  ///< of this run; where it tells what is asked, the run is not drawn once more
 };
 

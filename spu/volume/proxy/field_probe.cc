@@ -202,7 +202,7 @@ std::vector<volume::Rgba> FieldProbe::at_slopes(double x, double y, std::span<co
   std::vector<float> texels;
   std::vector<volume::Rgba> shown = drawn_at(x, y, fields.size(), [&](std::size_t f) {
     const SlopedField& field = fields[f];
-    if (field.table) show_plain(*field.table);
+    for (const PlainTable& table : field.tables) show_plain(table);
     if (!heights || heights->slope != field.slope) heights = heights_of(field.slope);
     texels.resize(heights->texels.size());
     std::ranges::transform(heights->texels, texels.begin(),
@@ -210,7 +210,7 @@ std::vector<volume::Rgba> FieldProbe::at_slopes(double x, double y, std::span<co
     show(texels, heights->size, GL_LINEAR);
   });
   for (const SlopedField& field : fields) {
-    if (field.table) show_own(field.table->texture);
+    for (const PlainTable& table : field.tables) show_own(table.texture);
   }
   return shown;
 }
@@ -218,7 +218,7 @@ std::vector<volume::Rgba> FieldProbe::at_slopes(double x, double y, std::span<co
 std::vector<volume::Rgba> FieldProbe::at_stripes(double x, double y, std::span<const StripedField> fields) {
   std::vector<volume::Rgba> shown = drawn_at(x, y, fields.size(), [&](std::size_t f) {
     const StripedField& field = fields[f];
-    if (field.table) show_plain(*field.table);
+    for (const PlainTable& table : field.tables) show_plain(table);
     std::array<int, 3> size{1, 1, 1};
     size[field.axis] = field_texels;
     std::vector<float> texels;
@@ -228,7 +228,7 @@ std::vector<volume::Rgba> FieldProbe::at_stripes(double x, double y, std::span<c
     show(texels, size, GL_NEAREST);
   });
   for (const StripedField& field : fields) {
-    if (field.table) show_own(field.table->texture);
+    for (const PlainTable& table : field.tables) show_own(table.texture);
   }
   return shown;
 }
@@ -246,6 +246,7 @@ std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::size_t w
   while (colours.size() < wanted) {
     const std::size_t count = std::min(std::size_t(columns) * std::size_t(most_rows), wanted - colours.size());
     const int rows = (int(count) + columns - 1) / columns;
+    const std::size_t kept = textures_.size();
     gl_.Scissor(left, bottom, columns, rows);
     clear();
     for (std::size_t i = 0; i < count; ++i) {
@@ -259,6 +260,9 @@ std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::size_t w
     std::vector<volume::Rgba> read_back(std::size_t(columns) * std::size_t(rows));
     gl_.ReadPixels(left, bottom, columns, rows, GL_RGBA, GL_FLOAT, read_back.data());
     colours.insert(colours.end(), read_back.begin(), read_back.begin() + std::ptrdiff_t(count));
+    // Those that were shown meanwhile, of which there may be hundreds.
+    gl_.DeleteTextures(GLsizei(textures_.size() - kept), textures_.data() + kept);
+    textures_.resize(kept);
   }
   return colours;
 }

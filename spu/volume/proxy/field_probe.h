@@ -67,7 +67,7 @@ class FieldProbe {
     float value = 0;      ///< at the slope's place
     float steepness = 1;  ///< times the slope's gradient
     EvenSlope slope{};
-    std::optional<PlainTable> table{};  ///< null: the program reads its own
+    std::span<const PlainTable> tables{};  ///< of others the program reads its own
   };
   std::vector<volume::Rgba> at_slopes(double x, double y, std::span<const SlopedField> fields);
 
@@ -77,7 +77,7 @@ class FieldProbe {
     int width = 1;  ///< of a stripe, in multiples of split_unit
     int begin = 0;  ///< of a stripe, likewise
     std::array<float, 2> values{};
-    std::optional<PlainTable> table{};
+    std::span<const PlainTable> tables{};
   };
   std::vector<volume::Rgba> at_stripes(double x, double y, std::span<const StripedField> fields);
 

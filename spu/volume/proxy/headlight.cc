@@ -336,11 +336,12 @@ std::variant<volume::Light, Refusal> light_that_explains(SlopeProbe& slopes, con
 /// By the first of the likely spaces, and the plainest of lights, that explain what is seen.
 std::variant<volume::Light, Refusal> light_in_any(SlopeProbe& slopes, const LitRay& ray,
                                                   const volume::RaySteps& steps,
-                                                  const std::vector<LightInSpace>& likely) {
+                                                  const std::vector<LightInSpace>& likely,
+                                                  std::span<const bool> coloured) {
   std::variant<volume::Light, Refusal> found = not_from_the_eye;
-  for (const bool coloured : {false, true}) {
+  for (const bool with_colours : coloured) {
     for (const LightInSpace& in_space : likely) {
-      found = light_that_explains(slopes, ray, steps, in_space, coloured);
+      found = light_that_explains(slopes, ray, steps, in_space, with_colours);
       if (std::holds_alternative<volume::Light>(found)) return found;
     }
   }
@@ -355,19 +356,29 @@ std::variant<volume::Light, Refusal> light_on_own_ray(const MarchContext& measur
   if (likely.empty()) return not_from_the_eye;
   if (!is_the_same_for_any_steepness(slopes, ray, LightSpace(likely.front().light, ray.way.way), axis_of_entry))
     return depends_on_steepness;
-  return light_in_any(slopes, ray, march.steps, likely);
+  // Colours that are much alike tell less of the light's.
+  constexpr std::array white_first{false, true};
+  return light_in_any(slopes, ray, march.steps, likely, white_first);
 }
 
-/// Of a ray under plain tables.
+/// Of a ray under plain tables, whose colours tell the light's.
 std::variant<volume::Light, Refusal> light_on_plain_ray(const MarchContext& measured, SlopeProbe& slopes,
                                                         const LitRay& plain, const March& march,
                                                         const volume::Light& light) {
-  auto found = light_in_any(slopes, plain, march.steps,
-                            in_likely_spaces(slopes, plain, light, candidate_spaces(measured, march)));
-  const auto* const on_steep = std::get_if<volume::Light>(&found);
-  if (on_steep == nullptr) return found;
-  auto guarded = with_normal_guard(slopes, plain, march.steps, *on_steep);
-  if (!guarded) return depends_on_steepness;
+  constexpr std::array coloured{true};
+  return light_in_any(slopes, plain, march.steps,
+                      in_likely_spaces(slopes, plain, light, candidate_spaces(measured, march)), coloured);
+}
+
+/// The light, which explains the steepest slopes of the `plain` ray, with the guard that explains gentler ones;
+/// looked at under the program's own table, which may be looked up by more than was told.
+std::variant<volume::Light, Refusal> light_of_all_steepnesses(SlopeProbe& slopes, const LitRay& ray,
+                                                              const LitRay& plain, std::size_t axis_of_entry,
+                                                              const volume::RaySteps& steps,
+                                                              const volume::Light& light) {
+  auto guarded = with_normal_guard(slopes, plain, steps, light);
+  if (!guarded || !is_lit_as_said_for_any_steepness(slopes, ray, steps, *guarded, axis_of_entry))
+    return depends_on_steepness;
   return *std::move(guarded);
 }
 
@@ -422,7 +433,9 @@ std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchC
       is_black_where_even(march) ? std::nullopt : under_plain_tables(measured, probe, march, ray);
   std::variant<volume::Light, Refusal> found = not_from_the_eye;
   if (plain) found = light_on_plain_ray(measured, slopes, *plain, march, light);
-  if (std::holds_alternative<Refusal>(found))
+  if (const auto* const steep = std::get_if<volume::Light>(&found))
+    found = light_of_all_steepnesses(slopes, ray, *plain, axis, march.steps, *steep);
+  else
     found = light_on_own_ray(measured, slopes, ray, axis, march, light);
   if (auto* const refusal = std::get_if<Refusal>(&found)) return std::move(*refusal);
   light = std::get<volume::Light>(std::move(found));

@@ -185,7 +185,7 @@ std::optional<Jitter> moving_jitter_by(const GlContext& context, FieldProbe& pro
   };
   const auto zeros = split_under([] { return 0.0F; });
   const auto rule = std::ranges::find_if(rules, [&](const volume::RaySteps& steps) {
-    return misplaced_part(zeros, rays, steps) <= most_misplaced;
+    return misplaced_part(zeros, rays, steps).value_or(0) <= most_misplaced;
   });
   if (zeros.empty() || rule == rules.end()) return std::nullopt;
   const auto ones = split_under([] { return 1.0F; });
@@ -200,7 +200,7 @@ std::optional<Jitter> moving_jitter_by(const GlContext& context, FieldProbe& pro
   const auto explained_by = [&](const std::vector<SplitRays>& seen, const volume::RayOffsets& texels) {
     volume::RaySteps moved = *rule;
     moved.offsets = scaled(texels, jitter);
-    return same_rays(zeros, seen) && misplaced_part(seen, rays, moved) <= most_misplaced;
+    return same_rays(zeros, seen) && misplaced_part(seen, rays, moved).value_or(0) <= most_misplaced;
   };
   if (!explained_by(mixed, shown)) return std::nullopt;
   probe.show_own(texture);

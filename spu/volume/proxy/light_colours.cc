@@ -22,7 +22,7 @@ struct Line {
   double offset = 0;
 };
 
-/// Sums of pairs, taken about their means.
+/// Means of pairs, and their squares and products about them.
 class PairSums {
  public:
   void add(double x, double y) {
@@ -48,7 +48,7 @@ struct SeenLight {
   Tint added{};
 };
 
-/// The base colour over what is seen, for the values of one channel.
+/// What is seen by the base colour, channel by channel.
 std::array<PairSums, channels> sums_by_channel(const std::vector<Tint>& base, const std::vector<Tint>& seen) {
   std::array<PairSums, channels> sums;
   for (std::size_t v = 0; v < base.size(); ++v) {
@@ -193,8 +193,10 @@ ResponseFit response_fit(const volume::Light& light, const std::vector<Tint>& ba
   const double diffuse = spread ? (dy - ds * sy / ss) / (dd - along) : ds > 0 ? sy / ds : 0;
   const double specular = spread ? (sy - diffuse * ds) / ss : 0;
   fit.response = {float(diffuse), float(specular)};
-  for (const Row& row : rows)
-    fit.worst = std::max(fit.worst, std::abs(diffuse * row.diffuse + specular * row.specular - row.seen));
+  for (const Row& row : rows) {
+    const double here = std::abs(diffuse * row.diffuse + specular * row.specular - row.seen);
+    if (!(here <= fit.worst)) fit.worst = std::isfinite(here) ? here : std::numeric_limits<double>::infinity();
+  }
   return fit;
 }
 

@@ -88,6 +88,8 @@ class MarchMeasurement {
   /// By the rule that explains most rays.
   double least_misplaced(bool from_exit) const;
   const volume::RaySteps& likeliest_rule() const;
+  /// Whether nodes can be asked for samples that are counted ahead, in such a box.
+  bool may_count_ahead(const volume::RaySteps& rule, const volume::Box& region) const;
   void add_lit_marches(March march, std::vector<March>& marches) const;
   void add_marches(const CoordinateSpace& space, const volume::RaySteps& rule, bool seen,
                    std::vector<March>& marches) const;
@@ -225,8 +227,9 @@ void MarchMeasurement::take_rules(const std::vector<StepFit>& fits) {
     if (march_.jitter || measured_.clipped || !box_.cuts.empty()) of_fit.resize(1);
     rules_.insert(rules_.end(), of_fit.begin(), of_fit.end());
   }
-  // Planes and noise end rays elsewhere.
-  if (march_.jitter || march_.mean || measured_.clipped || !box_.cuts.empty()) return;
+  // Planes, geometry and noise end rays elsewhere.
+  if (march_.jitter || march_.mean || measured_.clipped || measured_.ends_at_geometry || !box_.cuts.empty())
+    return;
   for (const StepFit& fit : fits) {
     const std::vector<volume::RaySteps> of_fit = rules_counting_ahead(fit);
     rules_.insert(rules_.end(), of_fit.begin(), of_fit.end());
@@ -272,7 +275,7 @@ std::optional<Refusal> MarchMeasurement::measure_light() {
 
 std::optional<double> MarchMeasurement::misplaced(const volume::RaySteps& rule, bool from_exit) const {
   if (from_exit && !may_be_counted_from_exit(rule)) return std::nullopt;
-  return misplaced_part(split_, rays_, from_exit ? counted_from_exit(rule, rays_, probe_) : rule);
+  return misplaced_part(split_, rays_, from_exit ? counted_from_exit(rule, rays_, probe_) : rule).value_or(0);
 }
 
 double MarchMeasurement::least_misplaced(bool from_exit) const {
@@ -299,9 +302,9 @@ std::optional<Refusal> MarchMeasurement::find_places() {
   const std::vector<SeenValue> seen = seen_values(values_, through_);
   const auto split = [&] { return split_rays(measured_, probe_, march_, box_, seen); };
   split_ = split();
+  if (march_.jitter || least_misplaced(false) <= misplaced_by_rounding) return std::nullopt;
+  std::erase_if(rules_, [](const volume::RaySteps& rule) { return rule.counted_from.has_value(); });
   const double misplaced = least_misplaced(false);
-  constexpr double rounding = 0.02;
-  if (misplaced <= rounding || march_.jitter) return std::nullopt;
   // A way that is divided evenly comes close to steps from its end. In views in which both ends of rays are
   // alike neither explains much more than the other.
   march_.from_exit = least_misplaced(true) <= std::min(misplaced / 3, most_misplaced);
@@ -345,23 +348,29 @@ void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::R
   }
 }
 
+bool MarchMeasurement::may_count_ahead(const volume::RaySteps& rule, const volume::Box& region) const {
+  if (!volume::is_all_of_texture(region, measured_.texture.size)) return false;
+  return rule.beyond_end() == 0 ||
+         std::ranges::find(measured_.texture.wrap, volume::Wrap::repeat) == measured_.texture.wrap.end();
+}
+
 MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& spaces,
                                        const std::vector<std::optional<ProxyBox>>& boxes) const {
   std::vector<March> marches;
   for (std::size_t i = 0; i < spaces.size(); ++i) {
-    // Fields must have shown that the box is the whole texture.
-    if (!boxes[i] || (spaces[i].of_whole_box && split_.empty())) continue;
+    if (!boxes[i]) continue;
     const RaysThroughBox rays(boxes[i]->camera.texture_to_clip, boxes[i]->region, boxes[i]->cuts);
     for (std::size_t r = 0; r < rules_.size(); ++r) {
       const bool seen = !march_.extreme || (i == 0 && r < extremes_seen_);
       if (march_.from_exit && !may_be_counted_from_exit(rules_[r])) continue;
-      // Fields must have shown where samples lie that are counted ahead.
-      if (rules_[r].counted_from && !march_.jitter &&
-          (split_.empty() || !volume::is_all_of_texture(boxes[i]->region, measured_.texture.size)))
-        continue;
+      if (rules_[r].counted_from && !may_count_ahead(rules_[r], boxes[i]->region)) continue;
       const volume::RaySteps placed = march_.from_exit ? counted_from_exit(rules_[r], rays, probe_) : rules_[r];
-      if (misplaced_part(split_, rays, placed) <= most_misplaced)
-        add_marches(spaces[i], rules_[r], seen, marches);
+      const auto misplaced = misplaced_part(split_, rays, placed);
+      // Fields must have shown that the box is the whole texture, and where samples lie that are counted ahead.
+      if (!misplaced && spaces[i].of_whole_box) continue;
+      if (rules_[r].counted_from && !march_.jitter && !(misplaced && *misplaced <= misplaced_by_rounding))
+        continue;
+      if (misplaced.value_or(0) <= most_misplaced) add_marches(spaces[i], rules_[r], seen, marches);
     }
   }
   if (marches.empty()) return samples_lie_elsewhere;

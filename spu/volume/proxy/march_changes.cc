@@ -201,10 +201,10 @@ bool still_placed(const MarchContext& measured, const March& march, const ProxyB
   const auto middle = rays.middle();
   const auto seen = seen_values(values, probe.at(middle[0], middle[1], values));
   SplitBands bands = looked_at.bands;
-  bands.across_all_axes = false;
+  bands.across_all_axes = march.space.of_whole_box || march.steps.counted_from;
   const auto split = split_rays(measured, probe, march, box, seen, bands);
   const volume::RaySteps placed = march.from_exit ? counted_from_exit(march.steps, rays, probe) : march.steps;
-  return misplaced_part(split, rays, placed) <= most_misplaced;
+  return misplaced_part(split, rays, placed).value_or(0) <= most_misplaced;
 }
 
 }  // namespace understudy::spu

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "spu/volume/proxy/ray_colours.h"
@@ -39,9 +40,9 @@ std::vector<SeenSteepness> seen_steepnesses(SlopeProbe& slopes, const LitRay& pl
     for (const double steepness : steepnesses) {
       const std::vector<Rgba> shown = slopes.over(plain, plain.values, gradient, steepness);
       for (std::size_t v = 0; v < shown.size(); ++v) {
-        if (!reached(shown[v]) || std::abs(shown[v][3] - plain.base[v][3]) > same_opacity) return {};
+        if (!reached(shown[v]) || !(std::abs(shown[v][3] - plain.base[v][3]) <= same_opacity)) return {};
       }
-      seen.push_back({tints_of(shown), slopes.opacities_over_steep(plain, plain.values.front(), gradient),
+      seen.push_back({tints_of(shown), slopes.opacities_over(plain, plain.values.front(), gradient, steepness),
                       slopes.rise(gradient, steepness, light.reach)});
     }
   }
@@ -55,9 +56,11 @@ double worst_difference(const LitRay& plain, const volume::RaySteps& steps, cons
   double worst = 0;
   for (const SeenSteepness& seen : all) {
     const auto normals = ray_normals(plain.way, steps, seen.opacities, directions, seen.rise, light.guard);
-    for (std::size_t v = 0; v < base.size(); ++v)
-      worst = std::max(worst, difference(seen.tints[v], lit_tint(light, normals, base[v])) /
-                                  std::max(1.0, brightest(seen.tints)));
+    for (std::size_t v = 0; v < base.size(); ++v) {
+      const double here =
+          difference(seen.tints[v], lit_tint(light, normals, base[v])) / std::max(1.0, brightest(seen.tints));
+      if (!(here <= worst)) worst = std::isfinite(here) ? here : std::numeric_limits<double>::infinity();
+    }
   }
   return worst;
 }
@@ -71,7 +74,7 @@ struct GuardFit {
 /// Of this form, the slope that explains most: the best of powers of two, and then ever closer to it.
 GuardFit best_of_form(NormalGuard::Form form, double gentlest,
                       const std::function<double(const NormalGuard&)>& worst) {
-  // From a guard that hardly shows on the gentlest slope to one that hides all but the steepest.
+  // From a guard that hardly shows on the gentlest slope to one that takes a few hundredths of the steepest.
   constexpr int powers = 18;
   constexpr int refinements = 11;  // to a few ten thousandths
   const double least = gentlest / 64;
@@ -106,7 +109,8 @@ std::optional<volume::Light> with_normal_guard(SlopeProbe& slopes, const LitRay&
   GuardFit best{{}, worst({})};
   if (best.worst > none) {
     const double gentlest = directions.slope(seen.front().rise.gradient);
-    for (const NormalGuard::Form form : {NormalGuard::Form::added, NormalGuard::Form::root_of_squares}) {
+    for (const NormalGuard::Form form :
+         {NormalGuard::Form::added, NormalGuard::Form::root_of_squares, NormalGuard::Form::larger}) {
       const GuardFit of_form = best_of_form(form, gentlest, worst);
       if (of_form.worst < best.worst) best = of_form;
     }

@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -18,45 +21,76 @@ using volume::Rgba;
 
 namespace {
 
-/// Light makes colours several times as bright, and programs clamp them: these are dark, and differ by much.
+/// Light makes colours brighter, and programs clamp them: these are rather dark, and differ by much.
 constexpr std::array<std::array<float, 3>, 3> plain_colours{
-    {{0.25F, 0.05F, 0.12F}, {0.05F, 0.22F, 0.2F}, {0.15F, 0.12F, 0.03F}}};
+    {{0.4F, 0.08F, 0.2F}, {0.08F, 0.35F, 0.3F}, {0.25F, 0.2F, 0.05F}}};
 
-/// By so many times the range of values are fields tried beyond it, where slopes are steep.
-constexpr std::array<float, 7> places_in_range{0.5F, 0, 0.25F, 0.75F, 1, -20, 20};
+/// Places in the range of values, in parts of it from its low end. The first is the ray's value, the last two
+/// lie as far outside as steep slopes reach.
+constexpr std::array<float, 7> places_in_range{0.5F, 0, 0.25F, 0.75F, 1, -30, 30};
 
-/// The one table; null where there are none or several.
-std::optional<SampledTexture> only_table(const MarchContext& measured) {
-  if (measured.tables_of_samples.size() != 1) return std::nullopt;
+/// What of a colour the program takes from a table.
+enum class TableRole : std::uint8_t { colour_and_opacity, colour, opacity };
+
+struct Table {
+  SampledTexture texture;
+  TableRole role = TableRole::colour_and_opacity;
+};
+
+/// Those that are looked up by samples; empty where one is not a texture of 1 or 2 dimensions.
+std::vector<SampledTexture> textures_of_tables(const MarchContext& measured) {
   const Pipeline& pipeline = measured.run.pipeline();
-  const GLint location =
-      measured.context.gl->GetUniformLocation(pipeline.program, measured.tables_of_samples.front().c_str());
-  for (const SampledTexture& table : pipeline.others) {
-    if (table.sampler_location != location) continue;
-    if (table.target == GL_TEXTURE_1D || table.target == GL_TEXTURE_2D) return table;
+  std::vector<SampledTexture> textures;
+  for (const std::string& sampler : measured.tables_of_one_texel) {
+    const GLint location = measured.context.gl->GetUniformLocation(pipeline.program, sampler.c_str());
+    const auto table = std::ranges::find(pipeline.others, location, &SampledTexture::sampler_location);
+    if (table == pipeline.others.end() || (table->target != GL_TEXTURE_1D && table->target != GL_TEXTURE_2D))
+      return {};
+    textures.push_back(*table);
   }
-  return std::nullopt;
+  return textures;
 }
 
-/// Under the table, of even fields of these values.
-std::vector<Rgba> under(FieldProbe& probe, const LitRay& ray, const FieldProbe::PlainTable& table,
+/// One table has both; of two, either may have the opacity (VTK's has it in every component).
+std::vector<std::vector<Table>> possible_tables(const MarchContext& measured) {
+  const std::vector<SampledTexture> textures = textures_of_tables(measured);
+  if (textures.size() == 1) return {{{textures[0], TableRole::colour_and_opacity}}};
+  if (textures.size() != 2) return {};
+  return {{{textures[0], TableRole::colour}, {textures[1], TableRole::opacity}},
+          {{textures[0], TableRole::opacity}, {textures[1], TableRole::colour}}};
+}
+
+std::vector<FieldProbe::PlainTable> plain(std::span<const Table> tables, const std::array<float, 3>& colour,
+                                          float opacity) {
+  std::vector<FieldProbe::PlainTable> shown;
+  for (const Table& table : tables) {
+    const auto& [r, g, b] = colour;
+    Rgba texel{r, g, b, opacity};
+    if (table.role == TableRole::colour) texel[3] = 1;
+    if (table.role == TableRole::opacity) texel.fill(opacity);
+    shown.push_back({table.texture, texel});
+  }
+  return shown;
+}
+
+/// Under the tables, of even fields of these values.
+std::vector<Rgba> under(FieldProbe& probe, const LitRay& ray, const std::vector<FieldProbe::PlainTable>& tables,
                         std::span<const float> values) {
-  probe.show_plain(table);
+  for (const FieldProbe::PlainTable& table : tables) probe.show_plain(table);
   std::vector<Rgba> shown = probe.at(ray.x, ray.y, values);
-  probe.show_own(table.texture);
+  for (const FieldProbe::PlainTable& table : tables) probe.show_own(table.texture);
   return shown;
 }
 
 /// Of opacities of one sample, the one by which a ray lets about half of the light through.
-std::optional<float> half_seen_opacity(FieldProbe& probe, const LitRay& ray, const SampledTexture& texture,
+std::optional<float> half_seen_opacity(FieldProbe& probe, const LitRay& ray, std::span<const Table> tables,
                                        float value) {
   constexpr float half = 0.6F;
   constexpr float farthest = 0.25F;
   std::optional<float> found;
   float least = farthest;
   for (const float opacity : {0.002F, 0.004F, 0.008F, 0.016F, 0.03F, 0.06F, 0.12F, 0.24F, 0.48F}) {
-    const auto& [r, g, b] = plain_colours.front();
-    const Rgba shown = under(probe, ray, {texture, {r, g, b, opacity}}, {&value, 1}).front();
+    const Rgba shown = under(probe, ray, plain(tables, plain_colours.front(), opacity), {&value, 1}).front();
     if (!reached(shown) || !(std::abs(shown[3] - half) < least)) continue;
     least = std::abs(shown[3] - half);
     found = opacity;
@@ -71,35 +105,53 @@ bool are_one_colour(const std::vector<Rgba>& shown) {
   });
 }
 
-}  // namespace
-
-std::optional<LitRay> under_plain_tables(const MarchContext& measured, FieldProbe& probe, const March& march,
-                                         const LitRay& ray) {
+/// Whether each of the colours is seen, and none as another one.
+bool are_told_apart(const std::vector<Rgba>& colours) {
   constexpr double darkest = 1e-3;
-  const auto texture = only_table(measured);
-  if (!texture || march.background) return std::nullopt;
+  constexpr double least = 0.1;  // of the brighter one
+  for (const Rgba& one : colours) {
+    if (!(double(brightest_channel(one)) > darkest)) return false;
+    for (const Rgba& other : colours) {
+      const Tint a = tint_of(one);
+      const Tint b = tint_of(other);
+      if (&one != &other && difference(a, b) < least * std::max(brightest({a}), brightest({b}))) return false;
+    }
+  }
+  return true;
+}
+
+std::optional<LitRay> under_tables(const MarchContext& measured, FieldProbe& probe, const March& march,
+                                   const LitRay& ray, std::span<const Table> tables) {
   const float width = measured.range[1] - measured.range[0];
   std::vector<float> values;
   values.reserve(places_in_range.size());
   for (const float place : places_in_range) values.push_back(measured.range[0] + place * width);
-  const auto opacity = half_seen_opacity(probe, ray, *texture, values.front());
+  const auto opacity = half_seen_opacity(probe, ray, tables, values.front());
   if (!opacity) return std::nullopt;
-  LitRay plain{ray.x, ray.y, ray.way};
+  LitRay under_plain{ray.x, ray.y, ray.way};
   const bool already = premultiplied_already(measured, march);
-  for (const auto& [r, g, b] : plain_colours) {
-    const FieldProbe::PlainTable table{*texture, {r, g, b, *opacity}};
-    const std::vector<Rgba> shown = under(probe, ray, table, values);
+  for (const std::array<float, 3>& colour : plain_colours) {
+    under_plain.tables.push_back(plain(tables, colour, *opacity));
+    const std::vector<Rgba> shown = under(probe, ray, under_plain.tables.back(), values);
     if (!are_one_colour(shown)) return std::nullopt;
-    plain.values.push_back(values.front());
-    plain.base.push_back(premultiplied(shown.front(), already));
-    plain.tables.push_back(table);
+    under_plain.values.push_back(values.front());
+    under_plain.base.push_back(premultiplied(shown.front(), already));
   }
-  if (std::ranges::any_of(plain.base,
-                          [](const Rgba& colour) { return !(double(brightest_channel(colour)) > darkest); }))
-    return std::nullopt;
+  if (!are_told_apart(under_plain.base)) return std::nullopt;
   const std::size_t samples = places_on_way(march.steps, ray.way.way).size();
-  plain.plain_opacity = 1 - std::pow(1 - double(plain.base.front()[3]), 1 / double(samples));
-  return plain;
+  under_plain.plain_opacity = 1 - std::pow(1 - double(under_plain.base.front()[3]), 1 / double(samples));
+  return under_plain;
+}
+
+}  // namespace
+
+std::optional<LitRay> under_plain_tables(const MarchContext& measured, FieldProbe& probe, const March& march,
+                                         const LitRay& ray) {
+  if (march.background) return std::nullopt;
+  for (const std::vector<Table>& tables : possible_tables(measured)) {
+    if (auto found = under_tables(measured, probe, march, ray, tables)) return found;
+  }
+  return std::nullopt;
 }
 
 }  // namespace understudy::spu

@@ -11,8 +11,8 @@
 
 namespace understudy::spu {
 
-/// The ray with a table for each of its values; none where the program has not one table alone, of 1 or 2
-/// dimensions, that is looked up by samples, or where colours depend on more than it.
+/// The ray with tables for each of its values; none where the program looks up by samples neither one table of
+/// 1 or 2 dimensions nor two, of colours and of opacities, or where colours depend on more than them.
 std::optional<LitRay> under_plain_tables(const MarchContext& measured, FieldProbe& probe, const March& march,
                                          const LitRay& ray);
 

@@ -223,6 +223,7 @@ struct RayCasterStage::Draw {
   bool ends_at_geometry = false;                           ///< as in MarchContext
   std::optional<program::NeighbourDistance> neighbours{};  ///< likewise
   std::span<const std::string> tables_of_samples{};
+  std::span<const std::string> tables_of_one_texel{};
   std::optional<volume::Rect>
       kept{};  ///< part of the window where fragments are, where some are discarded by place
 
@@ -237,7 +238,7 @@ struct RayCasterStage::Draw {
             ends_at_geometry,
             kept,
             neighbours,
-            tables_of_samples,
+            tables_of_one_texel,
             &*seen.capture};
   }
 };
@@ -408,6 +409,7 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   }
   draw.ends_at_geometry = fetches_depth(context_, pipeline, says.facts);
   draw.tables_of_samples = says.ray->tables_of_samples;
+  draw.tables_of_one_texel = says.ray->tables_of_one_texel;
   draw.neighbours = neighbours_of_gradients(says);
   ProxyBox box = find_box(draw);
   draw.eye_inside = !box.cuts.empty();

@@ -249,8 +249,8 @@ std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& prob
   return counting.counted();
 }
 
-double misplaced_part(const std::vector<SplitRays>& split, const RaysThroughBox& rays,
-                      const volume::RaySteps& steps) {
+std::optional<double> misplaced_part(const std::vector<SplitRays>& split, const RaysThroughBox& rays,
+                                     const volume::RaySteps& steps) {
   constexpr double fewest_samples = 4;
   constexpr std::size_t fewest_rays = 64;
   std::array<std::size_t, 3> told{};  // by the axis of the plane
@@ -268,9 +268,10 @@ double misplaced_part(const std::vector<SplitRays>& split, const RaysThroughBox&
           lies_as_said(forwards ? ray.before : ray.samples - ray.before, ray.samples, *to_plane) ? 0 : 1;
     }
   }
-  double most = 0;
+  std::optional<double> most;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (told[axis] >= fewest_rays) most = std::max(most, double(misplaced[axis]) / double(told[axis]));
+    if (told[axis] >= fewest_rays)
+      most = std::max(most.value_or(0), double(misplaced[axis]) / double(told[axis]));
   }
   return most;
 }

@@ -3,6 +3,7 @@
 // before it. Fields of one value tell how many samples there are, and not where.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "spu/volume/proxy/coordinate_space.h"
@@ -54,9 +55,13 @@ std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& prob
                                   const SplitBands& bands = {});
 
 /// The part of the rays whose samples lie elsewhere than `steps` says, of those through planes across the axis
-/// along which most do; rays that tell nothing do not count.
-double misplaced_part(const std::vector<SplitRays>& split, const RaysThroughBox& rays,
-                      const volume::RaySteps& steps);
+/// along which most do; rays that tell nothing do not count. None
+/// where too few tell.
+std::optional<double> misplaced_part(const std::vector<SplitRays>& split, const RaysThroughBox& rays,
+                                     const volume::RaySteps& steps);
+
+/// So many lie elsewhere where planes fall on samples.
+constexpr double misplaced_by_rounding = 0.02;
 
 /// More misplaced rays than that are no rounding.
 constexpr double most_misplaced = 0.1;

@@ -147,7 +147,7 @@ std::vector<Rgba> SlopeProbe::over(const LitRay& ray, const std::vector<float>& 
       const double steepness = steepness_for(values[v], gradient);
       const double at_entry = samples_over_rise(ray, values[v], steepness * rise_of_way).value_at_entry;
       fields.push_back({float(at_entry), float(steepness), {slope, ray.way.entry, size}});
-      if (!ray.tables.empty()) fields.back().table = ray.tables[v];
+      if (!ray.tables.empty()) fields.back().tables = ray.tables[v];
     }
   }
   return premultiplied_all(probe_.at_slopes(ray.x, ray.y, fields));
@@ -166,10 +166,10 @@ SlopeProbe::SamplesOverRise SlopeProbe::samples_over_rise(const LitRay& ray, flo
   return samples;
 }
 
-std::vector<double> SlopeProbe::opacities_over_steep(const LitRay& ray, float value, const Vec3& gradient,
-                                                     int texels) const {
+std::vector<double> SlopeProbe::opacities_over(const LitRay& ray, float value, const Vec3& gradient,
+                                               double steepness, int texels) const {
   const double rise_of_way = volume::dot(risen(gradient, 1, field_size(texels)), ray.way.way);
-  return samples_over_rise(ray, value, allowed_steepness(ray, value, gradient) * rise_of_way).opacities;
+  return samples_over_rise(ray, value, steepness * rise_of_way).opacities;
 }
 
 double SlopeProbe::allowed_steepness(const LitRay& ray, float value, const Vec3& gradient) const {
@@ -280,7 +280,7 @@ Tint SlopeProbe::over_stripes(const LitRay& ray, std::size_t axis, int width) {
     fields.push_back(
         {axis, width, 2 * width * i / shifts, {ray.values.front() - half, ray.values.front() + half}});
   if (!ray.tables.empty()) {
-    for (FieldProbe::StripedField& field : fields) field.table = ray.tables.front();
+    for (FieldProbe::StripedField& field : fields) field.tables = ray.tables.front();
   }
   Tint mean{};
   for (const Rgba& colour : premultiplied_all(probe_.at_stripes(ray.x, ray.y, fields))) {

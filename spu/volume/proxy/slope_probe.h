@@ -33,8 +33,9 @@ struct LitRay {
   WayThroughBox way;
   std::vector<float> values{};
   std::vector<volume::Rgba> base{};  ///< premultiplied: the colours of the values that light gives multiples of
-  std::vector<FieldProbe::PlainTable> tables{};  ///< for each of `values`; empty: the program's own
-  double plain_opacity = 0;                      ///< of one sample under any of the tables
+  /// For each of `values`, all that are looked up by samples; empty: the program's own.
+  std::vector<std::vector<FieldProbe::PlainTable>> tables{};
+  double plain_opacity = 0;  ///< of one sample under any of the tables
 };
 
 class SlopeProbe {
@@ -71,9 +72,13 @@ class SlopeProbe {
         [&](float value, const volume::Vec3& gradient) { return allowed_steepness(ray, value, gradient); },
         texels);
   }
-  /// Opacities of the ray's samples over that field, from the eye on.
+  /// Opacities of the ray's samples over such a field, from the eye on.
+  std::vector<double> opacities_over(const LitRay& ray, float value, const volume::Vec3& gradient,
+                                     double steepness, int texels = slope_texels) const;
   std::vector<double> opacities_over_steep(const LitRay& ray, float value, const volume::Vec3& gradient,
-                                           int texels = slope_texels) const;
+                                           int texels = slope_texels) const {
+    return opacities_over(ray, value, gradient, allowed_steepness(ray, value, gradient), texels);
+  }
   /// By which the light is measured, at most.
   double steepness() const { return march_.slope_steepness; }
   /// By which a value of the ray is looked at over a gradient.

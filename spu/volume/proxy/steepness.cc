@@ -51,6 +51,21 @@ volume::Vec3 beside(const volume::Vec3& way, std::size_t axis_of_entry) {
   return volume::scale(square, 1 / length);
 }
 
+/// A gradient, and how many times the least rise that tells it is looked at.
+struct Slope {
+  volume::Vec3 gradient;
+  std::array<double, 3> steepness;
+};
+
+/// Nearly beside the ray as steep as its colours allow, and beside it, where values on it hardly differ, much
+/// steeper.
+std::array<Slope, 2> slopes_aside(const SlopeProbe& slopes, const LitRay& ray, const LightSpace& directions,
+                                  std::size_t axis_of_entry) {
+  const double measured = slopes.steepness();
+  return {{{directions.gradient(nearly_beside, 0.7), {measured, 0.25 * measured, std::max(12.0, measured)}},
+           {beside(ray.way.way, axis_of_entry), {measured, 100, 400}}}};
+}
+
 /// Whether slopes that face the eye show what slopes a quarter as steep do. What a guard against a division by
 /// zero takes from a normal's length shrinks as slopes get steeper: by a third of what is allowed here, at
 /// most, is the light wrong that is measured.
@@ -68,36 +83,57 @@ bool faces_alike_when_gentler(SlopeProbe& slopes, const LitRay& ray, const Light
   return true;
 }
 
+/// Whether a slope has the opacity of values nearby, and these colours, but for what values on the ray differ
+/// by.
+bool is_as_expected(SlopeProbe& slopes, const LitRay& ray, const volume::Vec3& gradient, double steepness,
+                    const std::vector<Rgba>& shown, const std::vector<Tint>& expected) {
+  constexpr float same_opacity = 0.03F;
+  constexpr double same = 0.05;
+  constexpr double brighter = 4;  // than the base colours, at most, are slopes taken to be at this angle
+  const std::vector<BaseNearby> base = base_nearby(slopes, ray, slopes.rise_along(ray, gradient, steepness));
+  const std::vector<Tint> tints = tints_of(shown);
+  for (std::size_t v = 0; v < shown.size(); ++v) {
+    if (!(shown[v][3] > base[v].least_opacity - same_opacity &&
+          shown[v][3] < base[v].most_opacity + same_opacity))
+      return false;
+    if (!(difference(tints[v], expected[v]) <=
+          same * std::max(1.0, brightest(expected)) + brighter * base[v].spread))
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool is_the_same_for_any_steepness(SlopeProbe& slopes, const LitRay& ray, const LightSpace& directions,
                                    std::size_t axis_of_entry) {
-  constexpr float same_opacity = 0.03F;
-  constexpr double same = 0.05;
-  constexpr double brighter = 4;  // than the base colours, at most, are slopes taken to be at this angle
-  struct Slope {
-    volume::Vec3 gradient;
-    std::array<double, 3> steepness;  ///< times the least rise that tells
-  };
   if (!faces_alike_when_gentler(slopes, ray, directions)) return false;
-  const double measured = slopes.steepness();
-  for (const Slope& looked_at :
-       {Slope{directions.gradient(nearly_beside, 0.7), {measured, 0.25 * measured, std::max(12.0, measured)}},
-        Slope{beside(ray.way.way, axis_of_entry), {measured, 100, 400}}}) {
+  for (const Slope& aside : slopes_aside(slopes, ray, directions, axis_of_entry)) {
     std::vector<Tint> first;
-    for (const double steepness : looked_at.steepness) {
-      const std::vector<Rgba> shown = slopes.over(ray, ray.values, looked_at.gradient, steepness);
-      const std::vector<BaseNearby> base =
-          base_nearby(slopes, ray, slopes.rise_along(ray, looked_at.gradient, steepness));
-      const std::vector<Tint> tints = tints_of(shown);
-      if (first.empty()) first = tints;
-      for (std::size_t v = 0; v < shown.size(); ++v) {
-        if (!(shown[v][3] > base[v].least_opacity - same_opacity &&
-              shown[v][3] < base[v].most_opacity + same_opacity))
-          return false;
-        if (difference(tints[v], first[v]) > same * std::max(1.0, brightest(first)) + brighter * base[v].spread)
-          return false;
+    for (const double steepness : aside.steepness) {
+      const std::vector<Rgba> shown = slopes.over(ray, ray.values, aside.gradient, steepness);
+      if (first.empty()) first = tints_of(shown);
+      if (!is_as_expected(slopes, ray, aside.gradient, steepness, shown, first)) return false;
+    }
+  }
+  return true;
+}
+
+bool is_lit_as_said_for_any_steepness(SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& steps,
+                                      const volume::Light& light, std::size_t axis_of_entry) {
+  const LightSpace directions(light, ray.way.way);
+  const std::vector<Tint> base = tints_of(ray.base);
+  for (const Slope& aside : slopes_aside(slopes, ray, directions, axis_of_entry)) {
+    for (const double steepness : aside.steepness) {
+      const EvenRise rise = slopes.rise(aside.gradient, steepness, light.reach);
+      std::vector<Tint> expected;
+      for (std::size_t v = 0; v < base.size(); ++v) {
+        const auto opacities = slopes.opacities_over(ray, ray.values[v], aside.gradient, steepness);
+        const auto normals = ray_normals(ray.way, steps, opacities, directions, rise, light.guard);
+        expected.push_back(lit_tint(light, normals, base[v]));
       }
+      const std::vector<Rgba> shown = slopes.over(ray, ray.values, aside.gradient, steepness);
+      if (!is_as_expected(slopes, ray, aside.gradient, steepness, shown, expected)) return false;
     }
   }
   return true;

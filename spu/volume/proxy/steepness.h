@@ -7,6 +7,8 @@
 
 #include "spu/volume/proxy/light_space.h"
 #include "spu/volume/proxy/slope_probe.h"
+#include "volume/light.h"
+#include "volume/sampling.h"
 
 namespace understudy::spu {
 
@@ -15,5 +17,9 @@ namespace understudy::spu {
 /// across `axis_of_entry`.
 bool is_the_same_for_any_steepness(SlopeProbe& slopes, const LitRay& ray, const LightSpace& directions,
                                    std::size_t axis_of_entry);
+
+/// The same where `light` is known, whose guard makes gentle slopes look otherwise.
+bool is_lit_as_said_for_any_steepness(SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& steps,
+                                      const volume::Light& light, std::size_t axis_of_entry);
 
 }  // namespace understudy::spu

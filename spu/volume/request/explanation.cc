@@ -68,9 +68,11 @@ std::string sampling_of(const volume::RenderRequest& request, const std::array<i
   const std::string_view jitter = !steps.offsets ? ""
                                   : cut_rays     ? ", every ray from the planes that cut the box"
                                                  : ", every ray later by a number of its own";
-  return fmt::format("a ray caster's box, {:.3f} x {:.3f} x {:.3f} {} a texel, the first sample {} in{}{}",
+  const std::string counted =
+      steps.counted_from ? fmt::format(", as many as if it were {} in", *steps.counted_from) : "";
+  return fmt::format("a ray caster's box, {:.3f} x {:.3f} x {:.3f} {} a texel, the first sample {} in{}{}{}",
                      a_texel[0], a_texel[1], a_texel[2], steps.divided ? "equal parts" : "steps", steps.first,
-                     jitter,
+                     counted, jitter,
                      request.op == volume::Operator::max   ? ", maximum"
                      : request.op == volume::Operator::min ? ", minimum"
                      : request.op == volume::Operator::add ? ", sum"

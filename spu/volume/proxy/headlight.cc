@@ -382,15 +382,21 @@ std::variant<volume::Light, Refusal> light_of_all_steepnesses(SlopeProbe& slopes
   return *std::move(guarded);
 }
 
-/// A ray through the middle of the view, with a value that lets half of the light through.
-std::optional<LitRay> ray_of_half_seen_value(SlopeProbe& slopes, const RaysThroughBox& rays,
+/// A ray through the middle of the view, with a value that lets half of the light through: under the tables of
+/// `march`, or the program's own. None where nothing is translucent.
+std::optional<LitRay> ray_of_half_seen_value(const MarchContext& measured, FieldProbe& probe,
+                                             SlopeProbe& slopes, const RaysThroughBox& rays,
                                              const March& march) {
   const auto middle = rays.middle();
   const auto way = rays.through(middle[0], middle[1]);
-  const auto value = way ? half_seen_value(march, way->way) : std::nullopt;
+  if (!way) return std::nullopt;
+  LitRay ray{middle[0], middle[1], *way};
+  if (march.plain_tables) return under_known_tables(measured, probe, march, ray);
+  const auto value = half_seen_value(march, way->way);
   if (!value) return std::nullopt;
-  LitRay ray{middle[0], middle[1], *way, {*value}};
+  ray.values = {*value};
   ray.base = slopes.base(ray.x, ray.y, ray.values);
+  if (!is_translucent(ray.base.front())) return std::nullopt;
   return ray;
 }
 
@@ -432,11 +438,13 @@ std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchC
   const auto plain =
       is_black_where_even(march) ? std::nullopt : under_plain_tables(measured, probe, march, ray);
   std::variant<volume::Light, Refusal> found = not_from_the_eye;
-  if (plain) found = light_on_plain_ray(measured, slopes, *plain, march, light);
-  if (const auto* const steep = std::get_if<volume::Light>(&found))
-    found = light_of_all_steepnesses(slopes, ray, *plain, axis, march.steps, *steep);
-  else
+  if (plain) found = light_on_plain_ray(measured, slopes, plain->ray, march, light);
+  if (const auto* const steep = std::get_if<volume::Light>(&found)) {
+    march.plain_tables = plain->tables;
+    found = light_of_all_steepnesses(slopes, ray, plain->ray, axis, march.steps, *steep);
+  } else {
     found = light_on_own_ray(measured, slopes, ray, axis, march, light);
+  }
   if (auto* const refusal = std::get_if<Refusal>(&found)) return std::move(*refusal);
   light = std::get<volume::Light>(std::move(found));
   constexpr std::array<LookedAt, 4> looked_at{{{0.2, 1.6}, {0.9, 3.7}, {1.5, 5.5}, {2.6, 8.8}}};
@@ -458,12 +466,11 @@ std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchC
 bool still_lit(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box, const March& march) {
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   SlopeProbe slopes(measured, probe, march);
-  const auto ray = ray_of_half_seen_value(slopes, rays, march);
+  const auto ray = ray_of_half_seen_value(measured, probe, slopes, rays, march);
   if (!ray) return !rays.way(rays.middle()[0], rays.middle()[1]);
   // A light that has moved aside shows where slopes lean towards it: two of these are at right angles.
   constexpr std::array<LookedAt, 3> looked_at{{{0.3, 1.9}, {1.2, 4.6}, {1.2, 4.6 + M_PI / 2}}};
-  return is_translucent(ray->base.front()) &&
-         shows_light(slopes, *ray, march.steps, *march.light, looked_at, coarse_texels);
+  return shows_light(slopes, *ray, march.steps, *march.light, looked_at, coarse_texels);
 }
 
 bool gradients_still_reach(const MarchContext& measured, const ProxyBox& box, const March& march,
@@ -473,8 +480,8 @@ bool gradients_still_reach(const MarchContext& measured, const ProxyBox& box, co
   if (!probe.complete() || !held_still(measured, probe, march)) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   SlopeProbe slopes(measured, probe, march);
-  const auto ray = ray_of_half_seen_value(slopes, rays, march);
-  if (!ray || !is_translucent(ray->base.front())) return false;
+  const auto ray = ray_of_half_seen_value(measured, probe, slopes, rays, march);
+  if (!ray) return false;
   return std::ranges::all_of(axes, [&](std::size_t axis) {
     const auto reach = gradient_reach_along(slopes, *ray, *march.light, axis);
     return !reach || std::abs(*reach - march.light->reach[axis]) <= same;

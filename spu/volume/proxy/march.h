@@ -6,6 +6,7 @@
 // volume unit takes the one whose image is the application's.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <variant>
@@ -39,6 +40,13 @@ enum class Mean {
   of_values    ///< the mean has one
 };
 
+/// How tables of one colour were shown in place of the program's own (plain_tables.h).
+struct PlainTables {
+  std::size_t of_opacity = 0;  ///< which of the tables has the opacities
+  float opacity = 0;           ///< in the table
+  double of_sample = 0;        ///< what that makes of one sample
+};
+
 struct March {
   CoordinateSpace space;
   volume::RaySteps steps;
@@ -66,6 +74,8 @@ struct March {
   /// that face the eye.
   volume::TransferFunction table;
   std::optional<volume::Light> light;
+  /// Under which `light` was measured and is looked at again; null: under the program's own.
+  std::optional<PlainTables> plain_tables;
   /// Slopes by which `light` is measured and looked at again are at most so many times as steep as the gentlest
   /// that tell (SlopeProbe::over_steep).
   double slope_steepness = 16;

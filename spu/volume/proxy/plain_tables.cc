@@ -51,13 +51,17 @@ std::vector<SampledTexture> textures_of_tables(const MarchContext& measured) {
   return textures;
 }
 
-/// One table has both; of two, either may have the opacity (VTK's has it in every component).
-std::vector<std::vector<Table>> possible_tables(const MarchContext& measured) {
+/// One table has both colours and opacities, or one of two the opacities (VTK's has them in every component).
+/// Empty where there is no such table.
+std::vector<Table> tables_with(const MarchContext& measured, std::size_t of_opacity) {
+  constexpr std::size_t most = 2;
   const std::vector<SampledTexture> textures = textures_of_tables(measured);
-  if (textures.size() == 1) return {{{textures[0], TableRole::colour_and_opacity}}};
-  if (textures.size() != 2) return {};
-  return {{{textures[0], TableRole::colour}, {textures[1], TableRole::opacity}},
-          {{textures[0], TableRole::opacity}, {textures[1], TableRole::colour}}};
+  if (of_opacity >= textures.size() || textures.size() > most) return {};
+  if (textures.size() == 1) return {{textures[0], TableRole::colour_and_opacity}};
+  std::vector<Table> tables;
+  for (std::size_t i = 0; i < textures.size(); ++i)
+    tables.push_back({textures[i], i == of_opacity ? TableRole::opacity : TableRole::colour});
+  return tables;
 }
 
 std::vector<FieldProbe::PlainTable> plain(std::span<const Table> tables, const std::array<float, 3>& colour,
@@ -120,8 +124,15 @@ bool are_told_apart(const std::vector<Rgba>& colours) {
   return true;
 }
 
-std::optional<LitRay> under_tables(const MarchContext& measured, FieldProbe& probe, const March& march,
-                                   const LitRay& ray, std::span<const Table> tables) {
+/// Of each of the ray's samples, which are alike.
+double sample_opacity(const March& march, const LitRay& ray, double of_ray) {
+  return 1 - std::pow(1 - of_ray, 1 / double(places_on_way(march.steps, ray.way.way).size()));
+}
+
+std::optional<RayUnderPlainTables> under_tables(const MarchContext& measured, FieldProbe& probe,
+                                                const March& march, const LitRay& ray, std::size_t of_opacity) {
+  const std::vector<Table> tables = tables_with(measured, of_opacity);
+  if (tables.empty()) return std::nullopt;
   const float width = measured.range[1] - measured.range[0];
   std::vector<float> values;
   values.reserve(places_in_range.size());
@@ -138,20 +149,39 @@ std::optional<LitRay> under_tables(const MarchContext& measured, FieldProbe& pro
     under_plain.base.push_back(premultiplied(shown.front(), already));
   }
   if (!are_told_apart(under_plain.base)) return std::nullopt;
-  const std::size_t samples = places_on_way(march.steps, ray.way.way).size();
-  under_plain.plain_opacity = 1 - std::pow(1 - double(under_plain.base.front()[3]), 1 / double(samples));
-  return under_plain;
+  under_plain.plain_opacity = sample_opacity(march, ray, double(under_plain.base.front()[3]));
+  return RayUnderPlainTables{under_plain, {of_opacity, *opacity, under_plain.plain_opacity}};
 }
 
 }  // namespace
 
-std::optional<LitRay> under_plain_tables(const MarchContext& measured, FieldProbe& probe, const March& march,
-                                         const LitRay& ray) {
+std::optional<RayUnderPlainTables> under_plain_tables(const MarchContext& measured, FieldProbe& probe,
+                                                      const March& march, const LitRay& ray) {
   if (march.background) return std::nullopt;
-  for (const std::vector<Table>& tables : possible_tables(measured)) {
-    if (auto found = under_tables(measured, probe, march, ray, tables)) return found;
+  for (const std::size_t of_opacity : {std::size_t(1), std::size_t(0)}) {
+    if (auto found = under_tables(measured, probe, march, ray, of_opacity)) return found;
   }
   return std::nullopt;
+}
+
+std::optional<LitRay> under_known_tables(const MarchContext& measured, FieldProbe& probe, const March& march,
+                                         const LitRay& ray) {
+  constexpr double half = 0.6;
+  const PlainTables& known = *march.plain_tables;
+  const std::vector<Table> tables = tables_with(measured, known.of_opacity);
+  if (tables.empty()) return std::nullopt;
+  // Rays have other numbers of samples from here, and where steps have changed.
+  const double wanted = sample_opacity(march, ray, half);
+  const auto opacity = float(std::min(0.9, double(known.opacity) * wanted / known.of_sample));
+  LitRay plain_ray{ray.x, ray.y, ray.way};
+  plain_ray.values = {measured.range[0] + places_in_range.front() * (measured.range[1] - measured.range[0])};
+  plain_ray.tables = {plain(tables, plain_colours.front(), opacity)};
+  const Rgba shown = under(probe, ray, plain_ray.tables.front(), plain_ray.values).front();
+  if (!reached(shown)) return std::nullopt;
+  plain_ray.base = {premultiplied(shown, premultiplied_already(measured, march))};
+  if (!is_translucent(plain_ray.base.front())) return std::nullopt;
+  plain_ray.plain_opacity = sample_opacity(march, ray, double(plain_ray.base.front()[3]));
+  return plain_ray;
 }
 
 }  // namespace understudy::spu

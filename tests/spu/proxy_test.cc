@@ -606,6 +606,7 @@ TEST(CountingAhead, TakesAsManySamplesAsTheProgramWherever) {
   const auto rules = [](double offset) {
     return rules_counting_ahead({{1, 0, 0, 0, 1, 0, 0, 0, 1}, offset, 0});
   };
+  for (const double offset : {-0.5, 0.0, 0.5}) EXPECT_EQ(rules(offset).size(), 2U) << offset;
   for (const volume::RaySteps& steps : rules(-0.5)) EXPECT_EQ(samples_of_length(steps, 7.3), 7);
   for (const volume::RaySteps& steps : rules(0)) EXPECT_EQ(samples_of_length(steps, 7.6), 8);
   for (const volume::RaySteps& steps : rules(0.5)) EXPECT_EQ(samples_of_length(steps, 7.3), 8);

@@ -195,6 +195,8 @@ bool covers_samples(const GlContext& context, const Pipeline& pipeline, const Ma
          blending.op != volume::Operator::min && context.gl->IsEnabled(GL_CULL_FACE);
 }
 
+/// But for rounding: the coordinates of a box that is cropped by less than a texel are others, too, while
+/// samples that are counted ahead may begin half a texel inside (volume::is_all_of_texture).
 bool is_whole_texture(const volume::Box& region) {
   constexpr double same = 1e-3;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "compositor/rendered.h"
 #include "compositor/service.h"
 #include "spu/track/share_group.h"
 #include "spu/volume/depth/deferred_depth_write.h"
@@ -182,6 +183,7 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
         {run, request, image.uncut_window.value_or(request.window), image.eye_inside, volume.frames}, shown,
         volume.verified, *volume.counters);
     if (comparison && image.background_alone) comparison->difference.anything_visible = false;
+    if (comparison && !comparison->right) try_rounding(run.pipeline(), image, volume, service);
     take_comparison(comparison, volume, session_->ledger().frames());
   };
   const auto& capture = recognised.seen.capture;
@@ -202,6 +204,17 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
   ++volume.frames;
   stages.merged.note_brick(run.pipeline(), recognised.seen, request, volume.sent.texture);
   count_substituted(volume, counts, stages.account);
+}
+
+void VolumeUnit::try_rounding(const Pipeline& pipeline, const ImageRequest& image, KnownVolume& volume,
+                              compositor::RenderService& service) {
+  SampleRounding& rounding = volume.colours.rounding;
+  if (!rounding.may_explain_loss(volume.sent.texture) || is_finished_here(image, volume.march.march)) return;
+  volume::RenderRequest rounded = image.request;
+  round_samples(rounded);
+  if (rounded.filter == image.request.filter) return;
+  const TimedShare timed(stages().account.clock(), &FrameShares::render);
+  if (!stages().verifier.would_have_been_right(pipeline, service.render(rounded).image)) rounding.refute();
 }
 
 Phase VolumeUnit::resting_phase() const {

@@ -25,6 +25,7 @@ namespace understudy::spu {
 
 class RenderSession;
 
+struct ImageRequest;
 struct Stages;
 
 class VolumeUnit final : public DrawObserver {
@@ -58,6 +59,10 @@ class VolumeUnit final : public DrawObserver {
   void substitute(std::unique_ptr<Run>& run);
   void tidy();
   void show(Run& run, const Recognised& recognised, KnownVolume& volume, compositor::RenderService& service);
+  /// After a lost comparison: refutes that rounded samples explain it, where their image is wrong as well. The
+  /// application's own image is at hand, so that no other frame has to be drawn twice to learn this.
+  void try_rounding(const Pipeline& pipeline, const ImageRequest& image, KnownVolume& volume,
+                    compositor::RenderService& service);
   void forget_deleted_volumes();
 
   std::shared_ptr<RenderSession> session_;

@@ -21,8 +21,8 @@ bool may_be_rounded(const TextureDescription& texture) {
 }
 
 bool SampleRounding::try_after_loss(const TextureDescription& texture) {
-  if (state_ == State::tried) state_ = State::refuted;
-  if (state_ != State::exact || !may_be_rounded(texture)) return false;
+  if (state_ == State::tried) refute();
+  if (!may_explain_loss(texture)) return false;
   state_ = State::tried;
   return true;
 }

@@ -29,8 +29,14 @@ bool may_be_rounded(const TextureDescription& texture);
 class SampleRounding {
  public:
   bool rounds() const { return state_ == State::tried || state_ == State::adopted; }
+  /// Whether rounding would be another explanation of a comparison that was lost.
+  bool may_explain_loss(const TextureDescription& texture) const {
+    return state_ == State::exact && may_be_rounded(texture);
+  }
   /// A comparison was lost. True: rounding is another explanation, which is tried from the next image on.
   bool try_after_loss(const TextureDescription& texture);
+  /// It is none: the image with rounded samples is wrong as well.
+  void refute() { state_ = State::refuted; }
   /// A comparison of an image that shows something was won.
   void won() {
     if (state_ == State::tried) state_ = State::adopted;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "spu/volume/timing/milliseconds_since.h"
 #include "volume/request.h"
@@ -59,7 +60,7 @@ std::optional<Comparison> Verifier::compare_whole(const ImageToVerify& what, con
   if (!drawing.complete()) return std::nullopt;
   if (!volume.schedule.native_ms()) drawing.compile(what.run, window, what.request.depth);
   const double native_ms = drawing.add_timed(what.run);
-  const NativeImage native = drawing.image(window);
+  NativeImage native = drawing.image(window);
   const ImageDifference difference = difference_between(pipeline, native, image);
   if (what.eye_inside && difference.psnr() < inside_psnr) {
     volume.left_inside = fmt::format(
@@ -68,7 +69,13 @@ std::optional<Comparison> Verifier::compare_whole(const ImageToVerify& what, con
                   "move the eye out of the volume"};
   }
   volume.inside = what.eye_inside;
-  return judge(difference, native_ms, counters);
+  const Comparison comparison = judge(difference, native_ms, counters);
+  if (!comparison.right) lost_to_ = std::move(native);
+  return comparison;
+}
+
+bool Verifier::would_have_been_right(const Pipeline& pipeline, const volume::ImageView& image) const {
+  return difference_between(pipeline, lost_to_, image).worst.within_bound();
 }
 
 Comparison Verifier::judge(const ImageDifference& difference, double native_ms, VolumeCounters& counters) {
@@ -121,13 +128,17 @@ std::optional<Comparison> Verifier::compare_sentinels(const ImageToVerify& what,
   for (int i = 0; i < tiles; ++i) {
     const volume::Rect tile = random_tile(window);
     drawing.redraw(what.run, tile, what.request.depth);
-    const ImageDifference difference = difference_between(what.run.pipeline(), drawing.image(tile), image);
+    NativeImage native = drawing.image(tile);
+    const ImageDifference difference = difference_between(what.run.pipeline(), native, image);
     counters.verified_tiles.fetch_add(1, std::memory_order_relaxed);
     if (difference.worst.severity() > counters.verify_worst_tile) {
       counters.verify_worst_tile = difference.worst.severity();
       counters.verify_worst_frame = account_.frames() + 1;
     }
-    if (!difference.worst.within_bound()) return Comparison{difference, false, {}};
+    if (!difference.worst.within_bound()) {
+      lost_to_ = std::move(native);
+      return Comparison{difference, false, {}};
+    }
   }
   volume.schedule.sentinels_took(tiles, milliseconds_since(start));
   return std::nullopt;

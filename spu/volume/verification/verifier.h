@@ -51,6 +51,10 @@ class Verifier {
   std::optional<Comparison> verify(const ImageToVerify& what, const volume::ImageView& image,
                                    VerifiedVolume& volume, VolumeCounters& counters);
 
+  /// Whether another image of the same request is right where the last one was lost: it is compared with what
+  /// the application drew then.
+  bool would_have_been_right(const Pipeline& pipeline, const volume::ImageView& image) const;
+
   /// The verdict on a whole image, which is counted.
   Comparison judge(const ImageDifference& difference, double native_ms, VolumeCounters& counters);
 
@@ -66,6 +70,7 @@ class Verifier {
   const GlContext& context_;
   RenderSession& session_;
   FrameAccount& account_;
+  NativeImage lost_to_;  ///< what the application drew when a comparison was lost
   std::unique_ptr<NativeDrawing> sentinel_drawing_;
   std::array<int, 4> sentinel_extent_{};  ///< of it: width, height, samples, whether its background is white
   std::minstd_rand random_;               ///< where sentinels stand

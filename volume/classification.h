@@ -2,7 +2,9 @@
 // From a sample of the field to colour and opacity.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <variant>
 #include <vector>
 
@@ -20,6 +22,26 @@ struct TransferFunction {
   std::vector<Rgba> entries;
 
   bool operator==(const TransferFunction&) const = default;
+};
+
+/// At a place in a function, counted in entries, between the first and the last.
+inline std::array<double, 4> entry_at(const TransferFunction& function, double place) {
+  const auto below = std::min(std::size_t(place), function.entries.size() - 2);
+  std::array<double, 4> entry{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double a = function.entries[below][k], b = function.entries[below + 1][k];
+    entry[k] = a + (place - double(below)) * (b - a);
+  }
+  return entry;
+}
+
+/// A medium by the transfer function of steps of one length, and `step` of another request in these lengths,
+/// whose transfer function is this one corrected to it (opacity_correction.h).
+struct MediumFunction {
+  TransferFunction function;
+  double step = 1;
+
+  bool operator==(const MediumFunction&) const = default;
 };
 
 /// A volume whose texels already are colours: fragment = matrix * texel (row-major, plain RGBA), clamped to [0,

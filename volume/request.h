@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "volume/blending_operator.h"
@@ -67,10 +68,25 @@ struct RenderRequest {
   std::optional<DepthImage> depth;
   /// Nodes that send each other floats may send half floats, each time rounded to 2^-11 of a value.
   bool may_travel_as_halves = false;
+  /// Set: the image is of certified bounds. Each of its colour channels holds by how much any channel may
+  /// differ from the integral of this medium (error_bound/error_bound.h), and its alpha is the least opacity
+  /// that there may be: parts of it compose as colours do. For samples that cover whole rays, with a ghost
+  /// layer (ghost_layer_needed()).
+  std::optional<MediumFunction> bound_of;
   Optimizations optimizations;
 
   bool operator==(const RenderRequest&) const = default;
 };
+
+/// Whether the samples of a request on steps may cover their whole rays (RaySteps::cover_whole_ray).
+inline bool may_cover_whole_rays(const RenderRequest& request) {
+  const auto& steps = request.steps;
+  return steps && steps->first == 0.5 && !steps->divided && steps->past_depth == 0 && !steps->offsets &&
+         !steps->counted_from && request.op == Operator::over && request.filter == Filter::linear &&
+         std::holds_alternative<TransferFunction>(request.classification) && !request.fog &&
+         request.method == Method::post_classified && request.surfaces.empty() && !request.light &&
+         request.opacity_limit == 1;
+}
 
 /// Below this transparency nothing more of a ray is asked for: below `termination`, or where it has reached its
 /// opacity limit.

@@ -61,6 +61,13 @@ struct RaySteps {
   /// lie beyond the region, where the field is what the texture's wrapping makes of it; the texture does not
   /// repeat, the region is all of it, and there are no clip planes. Null: samples lie up to L.
   std::optional<double> counted_from;
+  /// The samples stand for the whole of their ray (the midpoint rule): sample i for the step around it, the
+  /// last one for all that is left, a half to one and a half steps, with the opacity and colour of that length.
+  /// A ray shorter than a step has one sample, in its middle. Steps begin where the ray does, at a clip plane
+  /// or the near plane if that cuts the region, and end before opaque geometry. `first` is 0.5, and none of
+  /// `divided`, `past_depth`, `offsets` and `counted_from` is set. For post-classified samples of a transfer
+  /// function under `over`, without fog, light or an opacity limit.
+  bool cover_whole_ray = false;
 
   /// By so many steps, at most, do samples lie beyond the end of their ray.
   double beyond_end() const {

@@ -19,6 +19,7 @@
 #include "compositor/service/time_limit.h"
 #include "volume/brick/brick_store.h"
 #include "volume/brick/histogram.h"
+#include "volume/error_bound/error_bound.h"
 #include "volume/footprint.h"
 #include "volume/frame_counts.h"
 #include "volume/kd_tree.h"
@@ -39,6 +40,7 @@ struct RankRenderer::Volume {
   KdTree tree;  ///< of the members of a group
   BrickStore bricks;
   std::unique_ptr<BrickRenderer> renderer;
+  ErrorBoundRenderer bounds;
   std::vector<TexelBox> shown;  ///< by each member
   enum class State { filling, complete, changing } state = State::filling;
   std::uint64_t version;
@@ -54,6 +56,7 @@ struct RankRenderer::Volume {
         tree(description, initial_partition(description, arrangement.members(), method)),
         bricks(description, tree.box(place.member)),
         renderer(make_renderer(bricks)),
+        bounds(bricks),
         version(description.version),
         keeps_bricks(place.keeper == rank) {
     if (keeps_bricks && arrangement.readers(rank) > 1) bricks.share();
@@ -79,6 +82,7 @@ struct RankRenderer::Volume {
 
   void take_changes() {
     renderer->blocks_changed(changed_blocks);
+    bounds.blocks_changed(changed_blocks);
     changed_blocks.clear();
   }
 
@@ -375,6 +379,7 @@ void RankRenderer::within_time(Volume& volume, const std::function<void()>& work
   if (done_until(*image_until_, work)) return;
   // What it keeps of a classification may be half made.
   volume.renderer = make_renderer_(volume.bricks);
+  volume.bounds = ErrorBoundRenderer(volume.bricks);
   throw RequestRefused(
       fmt::format("an image took longer than {} ms, the limit of these nodes: ask for fewer pixels or samples, "
                   "or use more nodes",
@@ -401,7 +406,8 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
                                 : intersection(request.window, request.viewport);
     Image result(part ? intersection(everything, *part) : everything);
     FrameCounts here;
-    within_time(volume, [&] { volume.renderer->render(request, result, here, occlusion); });
+    BrickRenderer& renderer = request.bound_of ? volume.bounds : *volume.renderer;
+    within_time(volume, [&] { renderer.render(request, result, here, occlusion); });
     // The first group's bricks are the volume once.
     if (volume.place.group > 0) here.blocks = here.blocks_empty = 0;
     counts += here;
@@ -503,6 +509,7 @@ void RankRenderer::divide(
   volume.renderer.reset();
   volume.bricks.reshape(tree.box(rank_), packed_block);
   volume.renderer = make_renderer_(volume.bricks);
+  volume.bounds = ErrorBoundRenderer(volume.bricks);
   volume.tree = std::move(tree);
   volume.find_shown();
 }

@@ -44,6 +44,12 @@ void write(Writer& out, const PreIntegrationTable& pairs) {
   out.integer(pairs.multiply_by_alpha);
 }
 
+void write(Writer& out, const TransferFunction& table) {
+  out.real(table.low);
+  out.real(table.high);
+  write_run(out, table.entries);
+}
+
 void write(Writer& out, const Classification& classification, std::optional<int> table_at) {
   if (table_at && std::holds_alternative<PreIntegrationTable>(classification)) {
     out.integer(kept_tables);
@@ -52,9 +58,7 @@ void write(Writer& out, const Classification& classification, std::optional<int>
   }
   out.integer(std::int64_t(classification.index()));
   if (const auto* table = std::get_if<TransferFunction>(&classification)) {
-    out.real(table->low);
-    out.real(table->high);
-    write_run(out, table->entries);
+    write(out, *table);
   } else if (const auto* pairs = std::get_if<PreIntegrationTable>(&classification)) {
     write(out, *pairs);
   } else {
@@ -77,6 +81,15 @@ PreIntegrationTable read_pairs(Reader& in) {
   return pairs;
 }
 
+TransferFunction read_transfer_function(Reader& in) {
+  TransferFunction table;
+  table.low = in.real32("classification.low");
+  table.high = in.real32("classification.high");
+  table.entries = in.values<Rgba>("classification.entries", limits::max_table_entries);
+  if (table.entries.size() < 2) in.fail("classification.entries", "holds fewer than two entries");
+  return table;
+}
+
 Classification read_classification(Reader& in, std::span<const PreIntegrationTable> kept) {
   const auto kind = in.integer("classification", 0, kept_tables);
   if (kind == kept_tables) {
@@ -88,12 +101,7 @@ Classification read_classification(Reader& in, std::span<const PreIntegrationTab
   }
   if (kind == 2) return read_pairs(in);
   if (kind == 0) {
-    TransferFunction table;
-    table.low = in.real32("classification.low");
-    table.high = in.real32("classification.high");
-    table.entries = in.values<Rgba>("classification.entries", limits::max_table_entries);
-    if (table.entries.size() < 2) in.fail("classification.entries", "holds fewer than two entries");
-    return table;
+    return read_transfer_function(in);
   }
   LinearMap map;
   for (float& value : map.matrix) value = in.real32("classification.matrix");
@@ -112,6 +120,7 @@ void write(Writer& out, const std::optional<RaySteps>& steps) {
   out.real(steps->past_depth);
   out.integer(steps->counted_from.has_value());
   if (steps->counted_from) out.real(*steps->counted_from);
+  out.integer(steps->cover_whole_ray);
   out.integer(steps->offsets.has_value());
   if (!steps->offsets) return;
   out.integer(steps->offsets->width);
@@ -128,6 +137,7 @@ std::optional<RaySteps> read_steps(Reader& in) {
   steps.rounding = in.real("steps.rounding");
   steps.past_depth = in.real("steps.past_depth");
   if (in.flag("steps.has_counted_from")) steps.counted_from = in.real("steps.counted_from");
+  steps.cover_whole_ray = in.flag("steps.cover_whole_ray");
   if (!in.flag("steps.offsets")) return steps;
   RayOffsets& offsets = steps.offsets.emplace();
   constexpr int most = limits::max_ray_offsets;
@@ -319,6 +329,11 @@ std::vector<std::byte> encode(const RenderRequest& request, std::optional<int> t
   out.real(request.opacity_limit);
   write(out, request.depth);
   out.integer(request.may_travel_as_halves);
+  out.integer(request.bound_of.has_value());
+  if (request.bound_of) {
+    write(out, request.bound_of->function);
+    out.real(request.bound_of->step);
+  }
   for (const bool left_out : {request.optimizations.empty_bricks, request.optimizations.dominated_samples,
                               request.optimizations.footprints})
     out.integer(left_out);
@@ -360,6 +375,11 @@ RenderRequest decode_request(std::span<const std::byte> payload, std::span<const
   request.opacity_limit = in.real32("opacity limit");
   request.depth = read_depth(in);
   request.may_travel_as_halves = in.flag("may_travel_as_halves");
+  if (in.flag("bound_of")) {
+    MediumFunction& medium = request.bound_of.emplace();
+    medium.function = read_transfer_function(in);
+    medium.step = in.real("bound_of.step");
+  }
   for (bool* left_out : {&request.optimizations.empty_bricks, &request.optimizations.dominated_samples,
                          &request.optimizations.footprints})
     *left_out = in.flag("optimizations");

@@ -136,6 +136,7 @@ struct GlslRayCaster::Rays {
   int width = 0;
   int height = 0;
   std::vector<Texel4> starts, steps;
+  std::vector<float> ends;  ///< lengths of the last samples; empty: of one step
 
   /// Sets up the rays of `pixels`; returns whether any has a sample.
   bool set_up(const RaySetup& setup, const RenderRequest& request, const Rect& pixels, FrameCounts& counts) {
@@ -143,6 +144,8 @@ struct GlslRayCaster::Rays {
     height = pixels.height;
     starts.resize(pixels.pixels());
     steps.resize(pixels.pixels());
+    const bool whole_rays = request.steps && request.steps->cover_whole_ray;
+    ends.resize(whole_rays ? pixels.pixels() : 0);
     tbb::combinable<FrameCounts> partial;
     const int packet_rows = (height + packet_height - 1) / packet_height;
     tbb::parallel_for(tbb::blocked_range<int>(0, packet_rows), [&](const tbb::blocked_range<int>& range) {
@@ -160,6 +163,7 @@ struct GlslRayCaster::Rays {
               const int first = packet.first[r], last = packet.last[r];
               starts[pixel] = {packet.start[0][r], packet.start[1][r], packet.start[2][r], float(first)};
               steps[pixel] = {packet.step[0][r], packet.step[1][r], packet.step[2][r], float(last)};
+              if (whole_rays) ends[pixel] = packet.last_length[r];
               if (first > last) continue;
               ++mine.rays;
               mine.samples += std::uint64_t(last - first + 1);
@@ -178,7 +182,7 @@ struct GlslRayCaster::Resources {
   // One of the two.
   std::optional<FieldTexture> field;
   std::optional<BrickPasses> bricks;
-  Texture starts, steps, image, taken;
+  Texture starts, steps, ends, image, taken;
   GLuint framebuffer = 0;
   int width = 0, height = 0;  ///< of the textures that have a texel per pixel
   /// The latest first: a viewer whose framebuffer keeps alpha asks for two images of every frame.
@@ -187,7 +191,7 @@ struct GlslRayCaster::Resources {
   std::vector<std::array<float, 2>> counted;  ///< what the shader says in `taken`
 
   Resources(Device& device, const BrickStore& store, int brick_cells)
-      : starts(device.gl()), steps(device.gl()), image(device.gl()), taken(device.gl()) {
+      : starts(device.gl()), steps(device.gl()), ends(device.gl()), image(device.gl()), taken(device.gl()) {
     if (FieldTexture::fits(device, store)) try {
         field.emplace(device, store);
       } catch (const OutOfMemory&) {
@@ -209,6 +213,7 @@ struct GlslRayCaster::Resources {
     };
     make(starts, GL_RGBA32F, GL_RGBA);
     make(steps, GL_RGBA32F, GL_RGBA);
+    make(ends, GL_R32F, GL_RED);
     if (bricks) return device.check("making textures for rays");  // they have images of their own
     make(image, GL_RGBA32F, GL_RGBA);
     make(taken, GL_RG32F, GL_RG);
@@ -231,6 +236,9 @@ struct GlslRayCaster::Resources {
     };
     upload(Unit::ray_starts, starts, rays.starts);
     upload(Unit::ray_steps, steps, rays.steps);
+    if (rays.ends.empty()) return;
+    bind(gl, Unit::ray_ends, GL_TEXTURE_2D, ends.name());
+    gl.TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, rays.width, rays.height, GL_RED, GL_FLOAT, rays.ends.data());
   }
 
   void count_walked(FrameCounts& counts) const {
@@ -415,6 +423,7 @@ const MarchProgram& GlslRayCaster::program_for(const RenderRequest& request, con
   variant.op = request.op;
   variant.own_filter = prepared.steep;
   variant.bricked = here.bricks.has_value();
+  variant.whole_rays = request.steps && request.steps->cover_whole_ray;
   return device_.program(variant);
 }
 

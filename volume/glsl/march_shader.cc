@@ -20,6 +20,9 @@ void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2
 constexpr const char* fragment_source = R"(
 uniform sampler2D ray_starts;   // lattice position of sample 0, and the ray's first sample
 uniform sampler2D ray_steps;    // from sample to sample, and the ray's last sample
+#ifdef WHOLE_RAYS
+uniform sampler2D ray_ends;     // of what the last sample stands for, in steps
+#endif
 uniform sampler3D field;        // a texel per lattice point
 uniform usampler3D distances;   // per block, see OccupancyMap
 uniform vec3 texture_origin, texture_scale;
@@ -55,6 +58,9 @@ layout(location = 1) out vec2 taken;  // samples, negative when the ray became o
 
 vec3 start, step_;
 float last;  // sample
+#ifdef WHOLE_RAYS
+float last_length;
+#endif
 #if !defined(NEAREST) && !defined(OWN_FILTER) && !defined(BRICKED)
 vec3 start_in_texture, step_in_texture;
 #endif
@@ -141,8 +147,23 @@ vec4 classified(TEXEL value) {
 #endif
 }
 
+#ifdef WHOLE_RAYS
+// From what a layer one step long shows to what one of `length_` steps does. Series where 1 - alpha would round.
+vec4 resized_layer(vec4 colour, float length_) {
+  if (colour.a <= 0.0) return colour * length_;
+  if (colour.a >= 1.0) return colour;
+  float a = colour.a;
+  float depth = length_ * (a < 1e-3 ? a * (1.0 + a * (0.5 + a / 3.0)) : -log(1.0 - a));
+  float kept = depth < 1e-3 ? depth * (1.0 - depth * (0.5 - depth / 6.0)) : 1.0 - exp(-depth);
+  return colour * (kept / a);
+}
+#endif
+
 vec4 colour_at(float k, TEXEL value) {
   vec4 colour = classified(value);
+#ifdef WHOLE_RAYS
+  if (k == last) colour = resized_layer(colour, last_length);
+#endif
   if (k > last) colour = vec4(NEUTRAL);
   return colour;
 }
@@ -154,6 +175,9 @@ void main() {
   step_ = along.xyz;
   float k = from.w;
   last = along.w;
+#ifdef WHOLE_RAYS
+  last_length = texelFetch(ray_ends, ivec2(gl_FragCoord.xy), 0).r;
+#endif
 #if !defined(NEAREST) && !defined(OWN_FILTER) && !defined(BRICKED)
   start_in_texture = (start - texture_origin + 0.5) * texture_scale;
   step_in_texture = step_ * texture_scale;
@@ -277,6 +301,7 @@ std::string defines(const MarchVariant& variant) {
   define(variant.op == Operator::first_hit, "ENDS sum.a > 0.0");
   define(variant.own_filter, "OWN_FILTER");
   define(variant.bricked, "BRICKED");
+  define(variant.whole_rays, "WHOLE_RAYS");
   // The largest float, without a literal that some compilers would round up to infinity.
   define(variant.op == Operator::min, "NEUTRAL uintBitsToFloat(0x7f7fffffu)");
   define(variant.op != Operator::min, "NEUTRAL 0.0");
@@ -343,6 +368,7 @@ MarchProgram link_march_program(const Functions& gl, const MarchVariant& variant
   gl.UseProgram(program.name);
   gl.Uniform1i(at("ray_starts"), GLint(Unit::ray_starts));
   gl.Uniform1i(at("ray_steps"), GLint(Unit::ray_steps));
+  gl.Uniform1i(at("ray_ends"), GLint(Unit::ray_ends));
   gl.Uniform1i(at("field"), GLint(Unit::field));
   gl.Uniform1i(at("distances"), GLint(Unit::distances));
   gl.Uniform1i(at("table"), GLint(Unit::table));

@@ -21,12 +21,13 @@ struct MarchVariant {
   bool own_filter = false;
   /// The field is some bricks of it (brick_passes.h), and rays wait where one is absent.
   bool bricked = false;
+  bool whole_rays = false;  ///< RaySteps::cover_whole_ray
 
   auto operator<=>(const MarchVariant&) const = default;  // NOLINT(modernize-use-nullptr): there is no pointer
 };
 
 /// Texture units, fixed at link time.
-enum class Unit : GLint { ray_starts, ray_steps, field, distances, table, pages, sums, progress };
+enum class Unit : GLint { ray_starts, ray_steps, ray_ends, field, distances, table, pages, sums, progress };
 
 struct MarchProgram {
   GLuint name = 0;

@@ -88,13 +88,7 @@ class PartWalk {
     const float* row = table.rows() + 8 * (std::size_t(divisions) * table.entries() + entry);
     Rgba colour;
     for (std::size_t k = 0; k < 4; ++k) colour[k] = row[k] + (place - float(entry)) * row[4 + k];
-    if (length < 1) {
-      const float opacity = colour[3];
-      const float kept = length > 0 ? -std::expm1(length * std::log1p(-std::min(opacity, 1.0F))) : 0;
-      const float ratio = opacity > 0 ? kept / opacity : length;
-      for (std::size_t k = 0; k < 3; ++k) colour[k] *= ratio;
-      colour[3] = kept;
-    }
+    resize_layer(std::min(length, 1.0F), colour);
     const float room = 1 - pixel[3];
     for (std::size_t k = 0; k < 4; ++k) pixel[k] += room * colour[k];
   }

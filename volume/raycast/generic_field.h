@@ -56,6 +56,16 @@ inline bool classify(const Scene& scene, float value, Rgba& colour) {
   return true;
 }
 
+/// From what a layer one step long shows to what one of `length` steps does.
+inline void resize_layer(float length, Rgba& colour) {
+  if (length == 1) return;
+  const float opacity = colour[3];
+  const float kept = length > 0 ? -std::expm1(length * std::log1p(-std::min(opacity, 1.0F))) : 0;
+  const float ratio = opacity > 0 ? kept / opacity : length;
+  for (std::size_t k = 0; k < 3; ++k) colour[k] *= ratio;
+  colour[3] = kept;
+}
+
 /// A pre-integration table at places within it.
 inline Rgba interpolated(const PreIntegrationLookup& pairs, float x, float y) {
   const auto entry = [&](float at) { return std::min(std::size_t(at), std::size_t(pairs.edge()) - 2); };

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "volume/blending_operator.h"
 #include "volume/classification.h"
@@ -135,6 +136,9 @@ void walk_packet(const Scene& scene, const RayPacket& packet, float* rgba, Kerne
         shows = classify(scene, walk.sample(), colour);
       }
       if (shows) {
+        if constexpr (std::is_same_v<typename FieldType::Sample, float>) {
+          if (scene.cover_whole_ray && k == last) resize_layer(packet.last_length[ray], colour);
+        }
         if (scene.fog != nullptr) lay_in_fog(*scene.fog, walk.position(), colour);
         compose(scene, colour, pixel);
       }

@@ -17,16 +17,6 @@ namespace {
 
 using Place = std::array<float, 3>;
 
-/// What a piece of `length` steps shows of a layer that is one step long.
-void shorten(float length, Rgba& colour) {
-  if (length >= 1) return;
-  const float opacity = colour[3];
-  const float kept = length > 0 ? -std::expm1(length * std::log1p(-std::min(opacity, 1.0F))) : 0;
-  const float ratio = opacity > 0 ? kept / opacity : length;
-  for (std::size_t k = 0; k < 3; ++k) colour[k] *= ratio;
-  colour[3] = kept;
-}
-
 /// Up to an opacity of `limit`.
 void compose(const Rgba& colour, Rgba& pixel, float limit = 1) {
   if (limit < 1 && pixel[3] >= limit) return;
@@ -130,7 +120,7 @@ class SegmentWalk {
       if (!search.find(level.value, cells, [&](float share) { return value_at(point(share)); })) continue;
       const float in_front = (search.front - before.front) * (u1 - u0);
       Rgba part = sampled;
-      shorten(in_front, part);
+      resize_layer(std::min(in_front, 1.0F), part);
       compose(part, pixel);
       layer -= in_front;
       piece(before.front, search.front, before.at_front, level.value);
@@ -138,7 +128,7 @@ class SegmentWalk {
       if (segments_.prepared_light) lay_in_light(point(search.front), colour);
       compose(colour, pixel);
     }
-    shorten(layer, sampled);
+    resize_layer(std::min(layer, 1.0F), sampled);
     compose(sampled, pixel);
     piece(search.front, 1, search.at_front, back);
   }
@@ -173,7 +163,7 @@ class SegmentWalk {
     if (length < 1) {
       const Rgba mirrored = interpolated(*scene_.pairs, back, front);
       for (std::size_t k = 0; k < 3; ++k) colour[k] += 0.5F * (1 - length) * (mirrored[k] - colour[k]);
-      shorten(length, colour);
+      resize_layer(length, colour);
     }
     return colour;
   }

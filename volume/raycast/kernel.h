@@ -45,6 +45,7 @@ struct Scene {
   std::array<float, 3> held_low{};
   std::array<float, 3> held_high{};
   const FogTable* fog = nullptr;  ///< null: the air is clear
+  bool cover_whole_ray = false;   ///< as of RaySteps
   Operator op = Operator::over;
   Filter filter = Filter::linear;
   float termination = 0;

@@ -88,6 +88,7 @@ Scene scene_of(const RenderRequest& request, const BrickStore& store, const RayS
   scene.filter = request.filter;
   scene.termination = least_transparency(request);
   scene.opacity_limit = request.opacity_limit;
+  scene.cover_whole_ray = request.steps && request.steps->cover_whole_ray;
   scene.top = setup.top;
   scene.rounding = setup.rounding;
   set_held(scene);

@@ -23,7 +23,7 @@ constexpr std::size_t region_bounds = 6;
 /// One row of rays, before samples outside the owned cells are dropped. `depth` has one value per pixel, or
 /// is null; so has `begins`, with steps: the place of the first sample.
 void set_up_row(const RaySetup& setup, const double* depth, const double* begins, bool depth_or_equal,
-                std::array<double, 2> depth_range, int x, int y, int width, std::size_t offset,
+                std::array<double, 2> depth_range, int x, int y, int width, std::size_t at_row,
                 RayPacket& packet) {
   const hn::ScalableTag<double> d;
   const hn::Rebind<float, decltype(d)> d_float;
@@ -91,7 +91,7 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
         speed = hn::Add(speed, hn::Mul(along, along));
       }
       part = hn::Div(hn::Abs(det), hn::Sqrt(speed));
-      const V offset = hn::LoadU(d, begins + column);
+      V offset = hn::LoadU(d, begins + column);
       V parts = hn::Set(d, infinity);
       if (setup.steps->divided) {
         const V way = hn::Sub(exit, entry);
@@ -99,11 +99,23 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
         meets = hn::And(meets, hn::Ge(parts, one));
         part = hn::Div(way, parts);
       }
+      V whole = zero;  // in steps
+      if (setup.steps->cover_whole_ray) {
+        entry = low;
+        high = hn::Min(high, hidden_from);
+        whole = hn::Div(hn::Sub(high, low), part);
+        meets = hn::And(meets, hn::Gt(whole, zero));
+        offset = hn::Min(offset, hn::Mul(hn::Set(d, 0.5), whole));
+      }
       const auto steps_to = [&](V end) HWY_ATTR { return hn::Sub(hn::Div(hn::Sub(end, entry), part), offset); };
       first = hn::Max(hn::Ceil(steps_to(low)), zero);
       const V counted_from = setup.steps->counted_from ? hn::Set(d, *setup.steps->counted_from) : offset;
       const V to_end = hn::Sub(hn::Div(hn::Sub(high, entry), part), counted_from);
       last = hn::Floor(hn::Min(to_end, hn::Sub(parts, one)));
+      if (setup.steps->cover_whole_ray) {
+        const V left = hn::IfThenElseZero(meets, hn::Sub(whole, last));
+        hn::Store(hn::DemoteTo(d_float, left), d_float, packet.last_length.data() + at_row + column);
+      }
       begin = setup.segments ? hn::Max(steps_to(low), hn::Neg(one)) : first;
       end = setup.segments ? steps_to(high) : last;
       if (depth) {
@@ -128,8 +140,8 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
       const V rest = hn::Set(d, setup.resting_place[axis]);
       const V step = hn::IfThenElseZero(meets, hn::Mul(hn::Mul(slope, inverse), part));
       hn::Store(hn::DemoteTo(d_float, hn::IfThenElse(meets, at_first, rest)), d_float,
-                packet.start[axis].data() + offset + column);
-      hn::Store(hn::DemoteTo(d_float, step), d_float, packet.step[axis].data() + offset + column);
+                packet.start[axis].data() + at_row + column);
+      hn::Store(hn::DemoteTo(d_float, step), d_float, packet.step[axis].data() + at_row + column);
     }
     const V more = hn::IfThenElse(meets, hn::Sub(last, first), hn::Set(d, -1.0));
     V lowest = zero;
@@ -137,11 +149,11 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
       const V before = hn::IfThenElseZero(meets, hn::Sub(begin, first));
       const V behind = hn::IfThenElseZero(meets, hn::Sub(end, first));
       lowest = hn::IfThenElseZero(hn::Lt(before, zero), hn::Neg(one));
-      hn::Store(hn::DemoteTo(d_float, before), d_float, packet.begin.data() + offset + column);
-      hn::Store(hn::DemoteTo(d_float, behind), d_float, packet.end.data() + offset + column);
+      hn::Store(hn::DemoteTo(d_float, before), d_float, packet.begin.data() + at_row + column);
+      hn::Store(hn::DemoteTo(d_float, behind), d_float, packet.end.data() + at_row + column);
     }
-    hn::Store(hn::DemoteTo(d_int, lowest), d_int, packet.first.data() + offset + column);
-    hn::Store(hn::DemoteTo(d_int, more), d_int, packet.last.data() + offset + column);
+    hn::Store(hn::DemoteTo(d_int, lowest), d_int, packet.first.data() + at_row + column);
+    hn::Store(hn::DemoteTo(d_int, more), d_int, packet.last.data() + at_row + column);
   }
 }
 
@@ -288,6 +300,8 @@ void keep_owned(const RaySetup& setup, RayPacket& packet, std::size_t r) {
     if (setup.low_is_bound[axis]) narrow(setup.owned_low[axis], true);
     if (setup.high_is_bound[axis]) narrow(setup.owned_high[axis], false);
   }
+  // Another rank's sample is the ray's last one.
+  if (setup.steps && setup.steps->cover_whole_ray && last < packet.last[r]) packet.last_length[r] = 1;
   packet.first[r] = first;
   packet.last[r] = last;
   if (first > last)  // samples of other ranks may lie in blocks that are not held

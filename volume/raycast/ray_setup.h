@@ -100,6 +100,8 @@ struct RayPacket {
   alignas(64) std::array<int, packet_rays> last;
   alignas(64) std::array<float, packet_rays> begin;  ///< > -1
   alignas(64) std::array<float, packet_rays> end;
+  /// Of what the last sample stands for, in steps. Set where samples cover the whole ray.
+  alignas(64) std::array<float, packet_rays> last_length;
 };
 
 /// Sets up the rays (x .. x + width, y .. y + height), one a pixel unless they are spread; the rest of the

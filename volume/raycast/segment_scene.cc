@@ -106,6 +106,11 @@ bool walks_segments(const RenderRequest& request) {
 }
 
 int ghost_layer_needed(const VolumeDescription& volume, const RenderRequest& request) {
+  if (request.bound_of && request.steps) {
+    // A sample may stand for a step and a half, around which second differences are looked at.
+    const std::array<double, 3> reach = step_reach(volume, request);
+    return int(std::min(std::ceil(1.5 * *std::ranges::max_element(reach)) + 2, 1e9));
+  }
   if (!walks_segments(request)) return 0;
   double reach = 0;
   if (has_segments(request) && request.steps)

@@ -12,16 +12,6 @@ namespace understudy::volume {
 
 namespace {
 
-std::array<double, 4> entry_at(const TransferFunction& function, double place) {
-  const auto below = std::min(std::size_t(place), function.entries.size() - 2);
-  std::array<double, 4> entry{};
-  for (std::size_t k = 0; k < 4; ++k) {
-    const double a = function.entries[below][k], b = function.entries[below + 1][k];
-    entry[k] = a + (place - double(below)) * (b - a);
-  }
-  return entry;
-}
-
 /// So many pieces, a whole number for each piece of `function`, where it has not got more already.
 std::size_t pieces_of(const TransferFunction& function, std::size_t least) {
   const std::size_t given = function.entries.size() - 1;

@@ -105,6 +105,30 @@ void validate_steps(const RaySteps& steps, const Box& region) {
   if (!(most <= max_planes)) refuse("rays of {} steps (at most {} are possible)", most, max_planes);
 }
 
+/// What RaySteps::cover_whole_ray is for.
+void validate_whole_rays(const RenderRequest& request) {
+  if (!request.steps || !request.steps->cover_whole_ray || may_cover_whole_rays(request)) return;
+  refuse(
+      "samples that cover whole rays lie in the middle of whole steps, end before opaque geometry, and are "
+      "those of a transfer function under over, with a linear filter, without fog, light, surfaces or an "
+      "opacity limit");
+}
+
+void validate_bound(const VolumeDescription& volume, const RenderRequest& request) {
+  if (!request.bound_of) return;
+  if (!request.steps || !request.steps->cover_whole_ray)
+    refuse("bounds of the error are for samples that cover whole rays");
+  const MediumFunction& medium = *request.bound_of;
+  validate_classification(volume, medium.function);
+  if (!(medium.step > 0 && std::isfinite(medium.step))) refuse("a medium for a step of {}", medium.step);
+  if (const int cells = ghost_layer_needed(volume, request); cells > volume.ghost_layer)
+    refuse(
+        "bounds of the error look {} cells around samples in a volume that was sent with a ghost layer of {}: "
+        "send "
+        "it again",
+        cells, volume.ghost_layer);
+}
+
 /// Samples beyond the region must not lie in texels that only others hold, and not in segments.
 void validate_count(const VolumeDescription& volume, const RenderRequest& request) {
   if (!request.steps || !request.steps->counted_from) return;
@@ -239,6 +263,8 @@ void validate(const VolumeDescription& volume, const RenderRequest& request) {
   validate_places(request);
   validate_region(volume, request);
   validate_count(volume, request);
+  validate_whole_rays(request);
+  validate_bound(volume, request);
   validate_cut(volume, request.cut_at_bricks);
   validate_ends(request);
   validate_classification(volume, request.classification);

@@ -498,14 +498,17 @@ HWY_INLINE Floats field_at(const Located& at, const Constants& constants, Rounde
 #include "volume/raycast/vector_colour-inl.h"
 
 /// The packet whose lowest left pixel is (x, y) of the packet.
+template <typename Values>
+HWY_INLINE Floats values_of_rays(const Values& of_packet, std::size_t x, std::size_t y) {
+  alignas(64) float packed[lanes];
+  for (std::size_t row = 0; row < rows; ++row)
+    for (std::size_t q = 0; q < 4; ++q) packed[4 * row + q] = float(of_packet[(y + row) * tile_width + x + q]);
+  return hn::Load(FloatTag(), packed);
+}
+
 HWY_INLINE Packet packet_of(const RayPacket& packet, std::size_t x, std::size_t y) {
   const FloatTag f;
-  const auto load = [&](const auto& values) HWY_ATTR {
-    alignas(64) float packed[lanes];
-    for (std::size_t row = 0; row < rows; ++row)
-      for (std::size_t q = 0; q < 4; ++q) packed[4 * row + q] = float(values[(y + row) * tile_width + x + q]);
-    return hn::Load(f, packed);
-  };
+  const auto load = [&](const auto& values) HWY_ATTR { return values_of_rays(values, x, y); };
   constexpr float block_cells = BrickStore::block_cells;
   Packet rays;
   rays.k = load(packet.first);

@@ -16,6 +16,8 @@
 #define HWY_TARGET_INCLUDE "volume/raycast/vector_kernel.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+// After highway.h, which says for which instruction set.
+#include <hwy/contrib/math/math-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace understudy::volume {
@@ -25,6 +27,7 @@ namespace HWY_NAMESPACE {
 
 #include "volume/blending_operator.h"
 #include "volume/raycast/vector_field-inl.h"
+#include "volume/raycast/vector_layer-inl.h"
 #include "volume/raycast/vector_slice_segments-inl.h"
 #include "volume/texel_type.h"
 
@@ -152,6 +155,33 @@ HWY_INLINE void take_segments(Packet& rays, const Constants& constants, Source s
   compose(classified, constants, pixels);
 }
 
+/// Lets the rays end before their last sample. Those that have no other stand still at it, where it is safe to
+/// read, and are done.
+HWY_INLINE void leave_last_sample(Packet& rays) {
+  const Floats one = hn::Set(FloatTag(), 1.0F);
+  const Floats before = hn::Sub(rays.last, one);
+  const auto others = hn::Le(rays.k, before);
+  rays.last = hn::IfThenElse(others, before, rays.k);
+  rays.k = hn::IfThenElse(others, rays.k, hn::Add(rays.k, one));
+}
+
+/// The last sample of every ray that has one, which stands for a layer of the given length.
+template <typename Source>
+HWY_INLINE void take_last_sample(Packet& rays, Floats length, const Constants& constants, Source source,
+                                 Colours& pixels) {
+  TablePlace place;
+  Located at;
+  locate(position_of(rays, constants), constants, at);
+  classify(at, rays, constants, source, place);
+  Colours colours{colour_at<0>(place, constants), colour_at<1>(place, constants),
+                  colour_at<2>(place, constants), colour_at<3>(place, constants)};
+  resize_layers(length, colours);
+  pixels[0] = composed<Operator::over>(pixels[0], colours[0]);
+  pixels[1] = composed<Operator::over>(pixels[1], colours[1]);
+  pixels[2] = composed<Operator::over>(pixels[2], colours[2]);
+  pixels[3] = composed<Operator::over>(pixels[3], colours[3]);
+}
+
 /// The sum of components of what every ray has seen of a maximum, added up as block_bounds() does.
 HWY_INLINE Floats sum_seen(const std::array<Floats, 4>& pixels) {
   const FloatTag f;
@@ -167,7 +197,9 @@ HWY_INLINE Floats sum_seen(const std::array<Floats, 4>& pixels) {
   return hn::BitCast(f, hn::InterleaveLower(wide, pair01, pair23));
 }
 
-template <bool slice_segments, typename Source>
+/// `slice_segments`: what is taken are segments; `whole_rays`: samples cover their rays, so that the last one
+/// stands for a layer of its own length.
+template <bool slice_segments, bool whole_rays, typename Source>
 void walk_packet(const Scene& scene, const RayPacket& packet, Source source, float* rgba,
                  KernelCounts& counts) {
   const FloatTag f;
@@ -179,10 +211,17 @@ void walk_packet(const Scene& scene, const RayPacket& packet, Source source, flo
     for (std::size_t x = 0; x < tile_width; x += 4 * group) {
       Group packets;
       std::array<Colours, group> pixels;
+      std::array<Floats, group> last;
+      std::array<hn::Mask<FloatTag>, group> exists;
       bool done = true;
       for (std::size_t g = 0; g < group; ++g) {
         packets[g] = packet_of(packet, x + 4 * g, y);
         pixels[g].fill(constants.neutral);
+        if constexpr (whole_rays) {
+          last[g] = packets[g].last;
+          exists[g] = hn::Le(packets[g].k, last[g]);
+          leave_last_sample(packets[g]);
+        }
         done = done && packets[g].done();
       }
       while (!done) {
@@ -214,6 +253,15 @@ void walk_packet(const Scene& scene, const RayPacket& packet, Source source, flo
           done = done && rays.done();
         }
       }
+      if constexpr (whole_rays) {
+        for (std::size_t g = 0; g < group; ++g) {
+          packets[g].last = last[g];
+          packets[g].k = hn::IfThenElse(exists[g], last[g], hn::Add(last[g], one));
+          taken = hn::Sub(taken, hn::VecFromMask(d, hn::RebindMask(d, exists[g])));
+          take_last_sample(packets[g], values_of_rays(packet.last_length, x + 4 * g, y), constants, source,
+                           pixels[g]);
+        }
+      }
       for (std::size_t g = 0; g < group; ++g)
         for (std::size_t q = 0; q < 4; ++q) {
           alignas(64) float column[lanes];
@@ -232,20 +280,21 @@ const char* target_name() {
 
 void vector_kernel(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
   const auto walk = [&](auto source) {
-    if (scene.pairs != nullptr) return walk_packet<true>(scene, packet, source, rgba, counts);
-    walk_packet<false>(scene, packet, source, rgba, counts);
+    if (scene.pairs != nullptr) return walk_packet<true, false>(scene, packet, source, rgba, counts);
+    if (scene.cover_whole_ray) return walk_packet<false, true>(scene, packet, source, rgba, counts);
+    walk_packet<false, false>(scene, packet, source, rgba, counts);
   };
   switch (scene.store->description().type) {
     case TexelType::u8:
       if (scene.filter == Filter::linear_8_bit)
-        return walk_packet<false>(scene, packet, RoundedBytes8(), rgba, counts);
+        return walk_packet<false, false>(scene, packet, RoundedBytes8(), rgba, counts);
       return walk(Bytes8());
     case TexelType::u16:
       return walk(Shorts16());
     case TexelType::f32:
       return walk(Floats32());
     case TexelType::rgba8:
-      return walk_packet<false>(scene, packet, Colours8(), rgba, counts);
+      return walk_packet<false, false>(scene, packet, Colours8(), rgba, counts);
   }
 }
 

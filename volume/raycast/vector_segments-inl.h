@@ -5,6 +5,7 @@
 // once per instruction set.
 
 #include "volume/raycast/vector_field-inl.h"
+#include "volume/raycast/vector_layer-inl.h"
 #include "volume/raycast/vector_slice_segments-inl.h"
 
 using Mask = hn::Mask<FloatTag>;
@@ -225,20 +226,8 @@ HWY_INLINE bool show(const Colours& colours) {
 
 /// What pieces of such lengths show of layers that are one step long.
 HWY_INLINE void shorten(Floats length, Colours& colours) {
-  const FloatTag f;
-  const Floats zero = hn::Zero(f), one = hn::Set(f, 1.0F);
-  const Floats alpha = alphas(colours);
-  // The logarithm wants less than full opacity, which stays what it is.
-  const Floats passing = hn::Min(alpha, hn::Set(f, 1 - std::numeric_limits<float>::epsilon()));
-  const Floats depth = hn::Mul(length, hn::Log1p(f, hn::Neg(passing)));
-  const Floats kept = hn::IfThenElse(hn::Lt(alpha, one), hn::Neg(hn::Expm1(f, depth)), one);
-  const Floats part = hn::IfThenElse(hn::Gt(alpha, zero), hn::Div(kept, alpha), length);
-  const Floats less = hn::IfThenElseZero(hn::Gt(length, zero), part);
-  const Floats ratio = hn::IfThenElse(hn::Lt(length, one), less, one);
-  colours[0] = hn::Mul(colours[0], hn::Broadcast<0>(ratio));
-  colours[1] = hn::Mul(colours[1], hn::Broadcast<1>(ratio));
-  colours[2] = hn::Mul(colours[2], hn::Broadcast<2>(ratio));
-  colours[3] = hn::Mul(colours[3], hn::Broadcast<3>(ratio));
+  const Floats one = hn::Set(FloatTag(), 1.0F);
+  multiply(hn::IfThenElse(hn::Lt(length, one), share_of_layer(length, alphas(colours)), one), colours);
 }
 
 HWY_INLINE void compose_over(const Colours& colours, Colours& pixels) {

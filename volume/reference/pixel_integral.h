@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "volume/matrix.h"
 #include "volume/reference/ray_integral.h"
 #include "volume/texture_space.h"
 
@@ -19,6 +20,9 @@ struct PixelRay {
   Vec3 from{};
   Vec3 to{};
   double length = 0;  ///< in steps of `request.steps`
+
+  /// `share` of the way.
+  Vec3 at(double share) const { return add(from, scale(subtract(to, from), share)); }
 };
 
 /// Empty where nothing of the ray does. The request's samples must lie on steps, of which only the unit of

@@ -18,6 +18,7 @@
 #include "apps/understudy/file_scene/file_scene.h"
 #include "apps/understudy/file_scene/load_progress.h"
 #include "apps/understudy/images/image.h"
+#include "apps/understudy/study/median.h"
 #include "compositor/logging/log.h"
 #include "compositor/rendered.h"
 #include "volume/image.h"
@@ -54,6 +55,15 @@ RgbaImage image_of(const volume::ImageView& image, const volume::Rect& window, b
   return file_image;
 }
 
+/// Of an image of bounds.
+BoundFigures bound_figures(const volume::ImageView& image) {
+  std::vector<double> bounds;
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+    if (image.rgba[i] > 0) bounds.push_back(double(image.rgba[i]));
+  if (bounds.empty()) return {};
+  return {*std::ranges::max_element(bounds), median(bounds), 0};
+}
+
 RenderFigures render_with(LoadingService& service, const FileScene& scene, const RenderArguments& arguments) {
   RenderFigures figures;
   figures.file = scene.load.file;
@@ -82,6 +92,8 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
   figures.load_ms = milliseconds_since(start);
 
   figures.request = request_of(scene, scene.image, texel_figures(figures.ranks));
+  volume::RenderRequest bounding = figures.request;
+  figures.request.bound_of.reset();
   for (int frame = 0; frame < arguments.frames; ++frame) {
     start = Clock::now();
     const compositor::Rendered rendered = service.render(figures.request);
@@ -91,6 +103,11 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
     write_png(arguments.out, image_of(rendered.image, figures.request.window, false));
     if (!arguments.save_float.empty())
       write_pfm(arguments.save_float, image_of(rendered.image, figures.request.window, true));
+  }
+  if (bounding.bound_of) {
+    start = Clock::now();
+    figures.bound = bound_figures(service.render(bounding).image);
+    figures.bound->time_ms = milliseconds_since(start);
   }
   figures.ranks = service.continue_load(scene.load.volume.id);
   return figures;
@@ -133,6 +150,8 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
   render_command->add_option("--report", arguments->report, "figures as JSON")
       ->type_name("F.json")
       ->check(can_be_written());
+  render_command->add_flag("--error-bound", arguments->scene.error_bound,
+                           "say by how much any pixel may be wrong, certified");
   render_command->add_option("--frames", arguments->frames, "render as often, for the time")
       ->check(CLI::Range(1, max_frames))
       ->capture_default_str();

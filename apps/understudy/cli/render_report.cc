@@ -78,6 +78,12 @@ std::string summary_text(const RenderFigures& figures) {
                       over_ranks(figures.ranks, &compositor::RankLoad::bytes_read),
                       over_ranks(figures.ranks, &compositor::RankLoad::brick_bytes),
                       over_ranks(figures.ranks, &compositor::RankLoad::peak_bytes));
+  if (figures.bound)
+    text += fmt::format(
+        "understudy: certified: no channel of any pixel is further than {:.3g} from the integral, of half the "
+        "pixels "
+        "{:.3g}; bounding took {:.0f} ms\n",
+        figures.bound->greatest, figures.bound->median, figures.bound->time_ms);
   const volume::TexelFigures texels = texel_figures(figures.ranks);
   if (texels.largest_error > 0 || texels.not_numbers > 0)
     text += fmt::format(
@@ -111,6 +117,11 @@ void write_render_report(const std::string& path, const RenderFigures& figures) 
                        {"processors", counts.processor_ms},
                        {"composite", counts.composite_ms}};
   report["frames_ms"] = figures.frame_ms;
+  report["error_bound"] = nullptr;
+  if (figures.bound)
+    report["error_bound"] = {{"greatest", figures.bound->greatest},
+                             {"median", figures.bound->median},
+                             {"time_ms", figures.bound->time_ms}};
   report["origin"] = origin();
   report["samples"] = counts.samples;
   report["samples_taken"] = counts.samples_taken;

@@ -2,6 +2,7 @@
 // What a rendering without a viewer says about itself: one line, and a JSON report (docs/report.md).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,13 @@
 #include "volume/request.h"
 
 namespace understudy::launcher {
+
+/// Of the certified bounds of an image's pixels.
+struct BoundFigures {
+  double greatest = 0;
+  double median = 0;  ///< of the pixels that rays through the volume show
+  double time_ms = 0;
+};
 
 struct RenderFigures {
   std::string file;
@@ -25,6 +33,7 @@ struct RenderFigures {
   double open_ms = 0;
   double load_ms = 0;
   std::vector<double> frame_ms;
+  std::optional<BoundFigures> bound;        ///< of the last frame, where it was asked for
   volume::FrameCounts counts;               ///< of the last frame
   std::vector<compositor::RankLoad> ranks;  ///< after the last frame
 };

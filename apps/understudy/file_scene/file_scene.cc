@@ -13,6 +13,7 @@
 #include "apps/understudy/file_scene/number_list.h"
 #include "apps/understudy/images/image.h"
 #include "volume/file/synthetic.h"
+#include "volume/opacity_correction.h"
 #include "volume/raycast/segment_scene.h"
 
 namespace understudy::launcher {
@@ -137,7 +138,8 @@ FileScene scene_of(const SceneArguments& arguments, const volume::FileDescriptio
   scene.load.volume.type = scene.mapping.type;
   scene.load.volume.stored = {{0, 0, 0}, scene.file.size};
   scene.image.shading = shading_of(arguments.shading, scene.extent());
-  // Segments and gradients reach beyond a node's own cells, by no more than the volume has.
+  scene.image.bounds_error = arguments.error_bound;
+  // Segments, gradients and bounds reach beyond a node's own cells, by no more than the volume has.
   scene.load.volume.ghost_layer =
       volume::ghost_layer_needed(scene.load.volume, unclassified_request(scene, scene.image));
   if (scene.load.volume.ghost_layer > *std::ranges::max_element(scene.file.size))
@@ -156,6 +158,7 @@ volume::RenderRequest unclassified_request(const FileScene& scene, const ImageSe
   request.cut_at_bricks = shading.cut_at_bricks;
   request.op = shading.op;
   request.light = shading.light;
+  if (image.bounds_error) request.bound_of.emplace();
   for (const SurfaceChoice& surface : shading.surfaces) request.surfaces.push_back({0, surface.colour});
   return request;
 }
@@ -175,19 +178,28 @@ volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& im
     request.light->full_slope = float(1e-3 * range / *std::ranges::max_element(scene.file.spacing));
   }
   if (!image.shading.shows_volume) {
+    request.bound_of.reset();
     request.classification = volume::TransferFunction{0, 1, {{}, {}}};
     return request;
   }
   const bool segments = request.method == volume::Method::pre_integrated;
-  volume::TransferFunction table = sampled(
-      segments ? spanning(image.control_points, low, high) : image.control_points, low, high, image.step);
+  volume::TransferFunction table =
+      sampled(segments ? spanning(image.control_points, low, high) : image.control_points, low, high, 1);
   table.low = float(scene.mapping.normalised(table.low));
   table.high = float(scene.mapping.normalised(table.high));
   if (table.low > table.high) {  // texels fall where values rise
     std::swap(table.low, table.high);
     std::ranges::reverse(table.entries);
   }
-  request.classification = std::move(table);
+  // One medium at every step: opacity is linear between entries for one voxel.
+  request.classification = opacity_corrected(table, image.step, table.entries.size());
+  if (image.bounds_error) request.bound_of = {std::move(table), image.step};
+  request.steps->cover_whole_ray = may_cover_whole_rays(request);
+  if (request.bound_of && !request.steps->cover_whole_ray)
+    throw std::invalid_argument(
+        "--error-bound is for samples of a transfer function, composed by over: leave out --method, "
+        "--operator, "
+        "--surface and --light");
   return request;
 }
 

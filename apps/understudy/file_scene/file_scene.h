@@ -31,6 +31,7 @@ struct SceneArguments {
   std::vector<double> spacing;
   std::string texels;
   std::string range;
+  bool error_bound = false;
 };
 
 void add_scene_options(CLI::App& subcommand, SceneArguments& arguments);
@@ -44,6 +45,7 @@ struct ImageSettings {
   int height = 512;
   double step = 1;  ///< between samples, in voxels
   float termination = 5e-6F;
+  bool bounds_error = false;  ///< requests are made for certified bounds, too
 };
 
 struct FileScene {

@@ -5,9 +5,10 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <random>
+#include <stdexcept>
 
-#include "volume/frame_counts.h"
-#include "volume/image.h"
 #include "volume/request.h"
 
 namespace understudy::launcher::study {
@@ -16,6 +17,26 @@ namespace {
 constexpr double finest_termination = 5e-6;
 /// Of steps one voxel long; that of others falls with the square of their length, as their error does.
 constexpr double adaptive_tolerance = 4e-3;
+
+/// Of values in rising order.
+double quantile(std::span<const double> sorted, double share) {
+  return sorted[std::min(std::size_t(share * double(sorted.size())), sorted.size() - 1)];
+}
+
+/// Of the RMS of rays, of each of which the sum of four squares is given.
+std::array<double, 2> bootstrapped_rms(std::span<const double> squares) {
+  constexpr int resamplings = 400;
+  std::minstd_rand random;
+  std::uniform_int_distribution<std::size_t> any(0, squares.size() - 1);
+  std::vector<double> found;
+  for (int i = 0; i < resamplings; ++i) {
+    double sum = 0;
+    for (std::size_t ray = 0; ray < squares.size(); ++ray) sum += squares[any(random)];
+    found.push_back(std::sqrt(sum / (4 * double(squares.size()))));
+  }
+  std::ranges::sort(found);
+  return {quantile(found, 0.025), quantile(found, 0.975)};
+}
 
 volume::Method method_of(Scheme scheme) {
   return scheme == Scheme::pre_integrated ? volume::Method::pre_integrated
@@ -64,50 +85,89 @@ std::vector<Setting> settings(bool quick) {
   return all;
 }
 
-Difference difference(const Scene::Rays& a, const Scene::Rays& b) {
+Difference difference(std::span<const std::array<double, 4>> a, std::span<const std::array<double, 4>> b) {
+  if (a.size() != b.size()) throw std::invalid_argument("rays that are compared must be as many");
   Difference result;
-  for (std::size_t i = 0; i < a.size(); ++i)
+  if (a.empty()) return result;
+  std::vector<double> squares, greatest;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    double square = 0, most = 0;
     for (std::size_t k = 0; k < 4; ++k) {
       const double d = std::abs(a[i][k] - b[i][k]);
-      result.max = std::max(result.max, d);
-      result.rms += d * d;
+      most = std::max(most, d);
+      square += d * d;
       if (k < 3) result.colour += d * d;
     }
-  const auto rays = double(std::max<std::size_t>(a.size(), 1));
-  result.rms = std::sqrt(result.rms / (4 * rays));
+    squares.push_back(square);
+    greatest.push_back(most);
+  }
+  const auto rays = double(a.size());
+  result.rms = std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / (4 * rays));
   result.colour = std::sqrt(result.colour / (3 * rays));
+  result.interval = bootstrapped_rms(squares);
+  std::ranges::sort(greatest);
+  result.max = greatest.back();
+  result.quantiles = {quantile(greatest, 0.5), quantile(greatest, 0.95), quantile(greatest, 0.99)};
   return result;
 }
 
-Point measure(Scene& scene, const Setting& setting, int repetitions, Scene::Rays& rays) {
-  Point point{setting};
+Measurement::Measurement(const Scene& scene, const Setting& setting)
+    : scene_(scene), setting_(setting), caster_(scene.store()), image_({0, 0, scene.edge(), scene.edge()}) {
+  for (const volume::OrbitCamera& camera : Scene::cameras()) {
+    requests_.push_back(scene.request(setting.step, method_of(setting.scheme), setting.termination, camera));
+    requests_.back().tolerance = float(adaptive_tolerance * setting.step * setting.step);
+  }
+  for (std::size_t camera = 0; camera < requests_.size(); ++camera) {
+    rendered(camera);
+    const Scene::Rays compared = scene.compared(image_);
+    rays_.insert(rays_.end(), compared.begin(), compared.end());
+    if (setting.scheme == Scheme::post_classified)
+      bound_ = std::max(bound_, scene.greatest_bound(requests_[camera], setting.step));
+  }
+}
+
+double Measurement::rendered(std::size_t camera) {
+  volume::FrameCounts counts;
+  const auto start = std::chrono::steady_clock::now();
+  caster_.render(requests_[camera], image_, counts);
+  const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
+  if (rays_.size() < scene_.exact().size()) counts_ += counts;
+  return time.count();
+}
+
+void Measurement::render() {
+  const std::size_t camera = times_.size() % requests_.size();
+  rendered(camera);
+  times_.push_back(rendered(camera));
+}
+
+Point Measurement::point() const {
+  Point point{setting_};
+  point.error = difference(rays_, scene_.exact());
+  point.bound = bound_;
+  const auto images = double(requests_.size());
+  point.samples = counts_.samples / requests_.size();
+  point.samples_taken = counts_.samples_taken / requests_.size();
+  if (times_.empty()) return point;
+  std::vector<double> times = times_;
+  std::ranges::sort(times);
+  point.time_ms = quantile(times, 0.5);
+  point.quartiles = {quantile(times, 0.25), quantile(times, 0.75)};
+  point.ns_per_ray = 1e6 * point.time_ms * images / double(std::max<std::uint64_t>(counts_.rays, 1));
+  return point;
+}
+
+Point measure(const Scene& scene, const Setting& setting, int repetitions, Scene::Rays& rays) {
   if (setting.scheme == Scheme::eight_bit_slices) {
+    Point point{setting};
     rays = scene.in_eight_bits(setting.step);
     point.error = difference(rays, scene.exact());
     return point;
   }
-  volume::RenderRequest request = scene.request(setting.step, method_of(setting.scheme), setting.termination);
-  request.tolerance = float(adaptive_tolerance * setting.step * setting.step);
-  volume::Image image(request.window);
-  volume::RayCaster caster(scene.store());
-  std::vector<double> times;
-  // The first image prepares what depends on the table alone, which a viewer pays once a table.
-  for (int i = 0; i <= repetitions; ++i) {
-    volume::FrameCounts counts;
-    const auto start = std::chrono::steady_clock::now();
-    caster.render(request, image, counts);
-    const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
-    if (i > 0) times.push_back(time.count());
-    point.samples = counts.samples;
-    point.samples_taken = counts.samples_taken;
-    point.ns_per_ray = 1e6 / double(std::max<std::uint64_t>(counts.rays, 1));
-  }
-  std::ranges::nth_element(times, times.begin() + std::ptrdiff_t(times.size() / 2));
-  point.time_ms = times[times.size() / 2];
-  point.ns_per_ray *= point.time_ms;
-  rays = scene.compared(image);
-  point.error = difference(rays, scene.exact());
-  return point;
+  Measurement measurement(scene, setting);
+  for (int i = 0; i < repetitions; ++i) measurement.render();
+  rays = measurement.rays();
+  return measurement.point();
 }
 
 void mark_front(std::span<Point> points) {
@@ -169,13 +229,11 @@ std::optional<Advantage> advantage_over(std::span<const Point> points, Scheme ot
   return advantage;
 }
 
-std::optional<double> observed_order(std::span<const Point> points, Scheme scheme) {
-  std::vector<std::array<double, 2>> logs;
-  for (const Point& point : points)
-    if (point.setting.scheme == scheme && point.setting.termination == finest_termination &&
-        point.error.rms > 0)
-      logs.push_back({std::log(point.setting.step), std::log(point.error.rms)});
-  if (logs.size() < 3) return std::nullopt;
+namespace {
+
+using LogPoint = std::array<double, 2>;  // of the step, and of the error
+
+double fitted_slope(std::span<const LogPoint> logs) {
   double mean_x = 0, mean_y = 0, xx = 0, xy = 0;
   for (const auto& [x, y] : logs) {
     mean_x += x / double(logs.size());
@@ -186,6 +244,39 @@ std::optional<double> observed_order(std::span<const Point> points, Scheme schem
     xy += (x - mean_x) * (y - mean_y);
   }
   return xy / xx;
+}
+
+bool is_straight(std::span<const LogPoint> logs, double slope) {
+  constexpr double most_apart = 0.25;
+  for (std::size_t i = 1; i < logs.size(); ++i) {
+    const double between = (logs[i][1] - logs[i - 1][1]) / (logs[i][0] - logs[i - 1][0]);
+    if (!(std::abs(between - slope) <= most_apart)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<ObservedOrder> observed_order(std::span<const Point> points, Scheme scheme) {
+  constexpr double float_rounding = 1e-6;
+  constexpr std::size_t fewest_steps = 3;
+  std::vector<LogPoint> logs;
+  for (const Point& point : points) {
+    const Setting& setting = point.setting;
+    if (setting.scheme == scheme && setting.termination == finest_termination &&
+        point.error.rms > float_rounding)
+      logs.push_back({std::log(setting.step), std::log(point.error.rms)});
+  }
+  std::ranges::sort(logs);
+  for (std::size_t length = logs.size(); length >= fewest_steps; --length) {
+    for (std::size_t first = 0; first + length <= logs.size(); ++first) {
+      const std::span range = std::span(logs).subspan(first, length);
+      const double slope = fitted_slope(range);
+      if (is_straight(range, slope))
+        return ObservedOrder{slope, {std::exp(range.front()[0]), std::exp(range.back()[0])}};
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace understudy::launcher::study

@@ -125,8 +125,9 @@ Point OtherPrograms::measure(const Scene& scene, const Setting& setting, Scene::
   point.time_ms = drawn.time_ms;
   point.ns_per_ray = 1e6 * drawn.time_ms / (double(scene.edge()) * scene.edge());
   rays = scene.compared(drawn.image);
-  for (std::size_t i = 0; i < rays.size(); ++i) rays[i][3] = scene.exact()[i][3];
-  point.error = difference(rays, scene.exact());
+  const auto exact = scene.exact_of_first_camera();
+  for (std::size_t i = 0; i < rays.size(); ++i) rays[i][3] = exact[i][3];
+  point.error = difference(rays, exact);
   point.error.rms = point.error.colour;
   return point;
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "apps/understudy/processes/origin.h"
 #include "volume/raycast/ray_caster.h"
 
 namespace understudy::launcher::study {
@@ -22,11 +23,16 @@ Json json_of(const Point& point) {
             {"rms", point.error.rms},
             {"max", point.error.max},
             {"rms_colour", point.error.colour},
+            {"rms_interval", point.error.interval},
+            {"quantiles", point.error.quantiles},
             {"time_ms", nullptr},
             {"ns_per_ray", nullptr},
             {"samples_taken", point.samples_taken},
             {"samples", point.samples},
-            {"front", point.front}};
+            {"front", point.front},
+            {"time_quartiles_ms", point.quartiles},
+            {"bound", nullptr}};
+  if (point.bound > 0) json["bound"] = point.bound;
   if (point.time_ms > 0) {
     json["time_ms"] = point.time_ms;
     json["ns_per_ray"] = point.ns_per_ray;
@@ -39,13 +45,16 @@ Point point_of(const Json& json) {
   const auto scheme = std::ranges::find(all_schemes, json.at("scheme").get<std::string>(), name_of);
   if (scheme == all_schemes.end()) throw std::invalid_argument("a scheme that is not known");
   point.setting = {*scheme, json.at("step"), json.at("termination")};
-  point.error = {json.at("max"), json.at("rms"), json.at("rms_colour")};
+  point.error = {json.at("max"), json.at("rms"), json.at("rms_colour"), json.at("rms_interval"),
+                 json.at("quantiles")};
   if (!json.at("time_ms").is_null()) {
     point.time_ms = json.at("time_ms");
     point.ns_per_ray = json.at("ns_per_ray");
   }
   point.samples_taken = json.at("samples_taken");
   point.samples = json.at("samples");
+  point.quartiles = json.at("time_quartiles_ms");
+  if (!json.at("bound").is_null()) point.bound = json.at("bound");
   return point;
 }
 
@@ -73,18 +82,26 @@ Json json_of(const std::optional<Ratio>& ratio) {
 }
 
 Json json_of(const SceneResults& scene) {
-  Json json{{"name", scene.name},           {"shows", scene.shows},
-            {"volume", scene.volume},       {"size", scene.size},
-            {"rays", scene.rays},           {"reference_seconds", scene.reference_seconds},
-            {"orders", Json::object()},     {"error_maps", scene.error_maps},
-            {"advantages", Json::object()}, {"absent", scene.absent},
-            {"points", Json::array()},      {"savings", Json::array()}};
+  Json json{{"name", scene.name},
+            {"shows", scene.shows},
+            {"volume", scene.volume},
+            {"size", scene.size},
+            {"rays", scene.rays},
+            {"reference_seconds", scene.reference_seconds},
+            {"stiffness", {{"depth", scene.stiffness.depth}, {"change", scene.stiffness.change}}},
+            {"orders", Json::object()},
+            {"error_maps", scene.error_maps},
+            {"advantages", Json::object()},
+            {"absent", scene.absent},
+            {"points", Json::array()},
+            {"savings", Json::array()}};
   for (const Scheme scheme : all_schemes)
     if (const auto advantage = advantage_over(scene.points, scheme); advantage && is_other_program(scheme))
       json["advantages"][name_of(scheme)] = {{"time_ratio", json_of(advantage->time)},
                                              {"error_ratio", json_of(advantage->error)}};
   for (const Scheme scheme : {Scheme::post_classified, Scheme::pre_integrated, Scheme::adaptive})
-    if (const auto order = observed_order(scene.points, scheme)) json["orders"][name_of(scheme)] = *order;
+    if (const auto order = observed_order(scene.points, scheme))
+      json["orders"][name_of(scheme)] = {{"slope", order->slope}, {"steps", order->steps}};
   for (const Point& point : scene.points) json["points"].push_back(json_of(point));
   for (const Saving& saving : scene.savings) json["savings"].push_back(json_of(saving));
   return json;
@@ -98,11 +115,25 @@ SceneResults scene_of(const Json& json) {
   scene.size = json.at("size");
   scene.rays = json.at("rays");
   scene.reference_seconds = json.at("reference_seconds");
+  scene.stiffness = {json.at("stiffness").at("depth"), json.at("stiffness").at("change")};
   scene.error_maps = json.at("error_maps");
   scene.absent = json.at("absent");
   for (const Json& point : json.at("points")) scene.points.push_back(point_of(point));
   for (const Json& saving : json.value("savings", Json::array())) scene.savings.push_back(saving_of(saving));
   return scene;
+}
+
+std::string row_of(const SceneResults& scene, const Point& point) {
+  const Setting& setting = point.setting;
+  const Difference& error = point.error;
+  std::string row =
+      fmt::format("{},{},{:g},{:g}", scene.name, name_of(setting.scheme), setting.step, setting.termination);
+  for (const double figure : {error.rms, error.interval[0], error.interval[1], error.colour, error.quantiles[0],
+                              error.quantiles[1], error.quantiles[2], error.max, point.bound, point.time_ms,
+                              point.quartiles[0], point.quartiles[1], point.ns_per_ray})
+    row += fmt::format(",{:.4g}", figure);
+  return row + fmt::format(",{},{},{:.4g},{:.4g},{:d}\n", point.samples_taken, point.samples,
+                           scene.stiffness.depth, scene.stiffness.change, point.front);
 }
 
 void write(const std::filesystem::path& path, const std::string& text) {
@@ -147,19 +178,22 @@ Results read_results(const std::filesystem::path& folder, int edge, int stride) 
 }
 
 void write_results(const std::filesystem::path& folder, const Results& results) {
-  Json json{{"edge", results.edge},
+  Json json{{"origin", origin()},
+            {"edge", results.edge},
             {"stride", results.stride},
+            {"cameras", Json::array()},
             {"instruction_set", volume::instruction_set()},
             {"scenes", Json::array()}};
+  for (const volume::OrbitCamera& camera : Scene::cameras())
+    json["cameras"].push_back(
+        {{"azimuth", camera.azimuth}, {"elevation", camera.elevation}, {"distance", camera.distance}});
   std::string csv =
-      "scene,scheme,step,termination,rms,rms_colour,max,time_ms,ns_per_ray,samples_taken,samples,front\n";
+      "scene,scheme,step,termination,rms,rms_low,rms_high,rms_colour,median,p95,p99,max,bound,time_ms,time_q1_"
+      "ms,"
+      "time_q3_ms,ns_per_ray,samples_taken,samples,depth,change,front\n";
   for (const SceneResults& scene : results.scenes) {
     json["scenes"].push_back(json_of(scene));
-    for (const Point& point : scene.points)
-      csv += fmt::format("{},{},{:g},{:g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{},{},{:d}\n", scene.name,
-                         name_of(point.setting.scheme), point.setting.step, point.setting.termination,
-                         point.error.rms, point.error.colour, point.error.max, point.time_ms, point.ns_per_ray,
-                         point.samples_taken, point.samples, point.front);
+    for (const Point& point : scene.points) csv += row_of(scene, point);
   }
   std::string savings = "scene,item,unit,left_out,all,time_ms,time_ms_without,difference,tolerance,shown\n";
   for (const SceneResults& scene : results.scenes)

@@ -3,6 +3,7 @@
 // row a setting.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -18,8 +19,9 @@ struct SceneResults {
   std::string shows;
   std::string volume;
   std::array<int, 3> size{};
-  int rays = 0;
+  int rays = 0;  ///< of all cameras
   double reference_seconds = 0;
+  Stiffness stiffness;
   std::vector<Point> points;
   /// Images of where a setting is wrong, by the setting's name; files beside study.json.
   std::map<std::string, std::string> error_maps;

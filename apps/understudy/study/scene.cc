@@ -10,12 +10,16 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "volume/error_bound/error_bound.h"
 #include "volume/file/synthetic.h"
 #include "volume/file/texel_stream.h"
 #include "volume/matrix.h"
+#include "volume/opacity_correction.h"
+#include "volume/raycast/pre_integration_lookup.h"
 #include "volume/raycast/segment_scene.h"
 #include "volume/reference/pixel_integral.h"
 
@@ -28,6 +32,9 @@ using volume::TransferFunction;
 constexpr std::size_t slice_range_bytes = std::size_t(16) << 20;
 /// As many as most viewers' tables have.
 constexpr std::size_t table_entries = 256;
+/// Of tables for other steps than one voxel: all show one medium, whose opacity is linear between the entries
+/// for one voxel. Tables of segments hold the square of their entries.
+constexpr std::size_t most_entries = 4096, most_entries_of_segments = volume::max_pre_integration_edge;
 
 /// `table` at 256 values; between them it is taken for linear, by the reference too.
 TransferFunction resampled(const TransferFunction& table) {
@@ -53,6 +60,13 @@ std::array<double, 4> sample_of(const TransferFunction& table, double value) {
   for (std::size_t k = 0; k < 4; ++k)
     sample[k] = (1 - share) * double(table.entries[below][k]) + share * double(table.entries[below + 1][k]);
   return sample;
+}
+
+/// Of one voxel.
+double greatest_depth(const TransferFunction& table) {
+  double opacity = 0;
+  for (const Rgba& entry : table.entries) opacity = std::max(opacity, double(entry[3]));
+  return -std::log1p(-opacity);
 }
 
 double in_bytes(double value) {
@@ -129,36 +143,33 @@ Scene::Scene(const SceneDescription& description, int edge, int stride)
     std::ranges::reverse(table_.entries);
   }
 
-  description_.ghost_layer = ghost_layer_needed(description_, request(8, volume::Method::pre_integrated, 0));
+  volume::RenderRequest bounding = request(8, volume::Method::post_classified, 0, cameras().front());
+  bounding.bound_of.emplace();
+  description_.ghost_layer = std::max(
+      ghost_layer_needed(description_, bounding),
+      ghost_layer_needed(description_, request(8, volume::Method::pre_integrated, 0, cameras().front())));
   store_ = std::make_unique<volume::BrickStore>(description_, volume::cell_lattice(description_).box());
   store_->add_slices(description_.stored, texels_);
   store_->finish();
+  variation_.emplace(*store_);
   field_ = texture_field(description_, volume::Filter::linear, texels_);
 }
 
-TransferFunction Scene::table_for(double step) const {
-  TransferFunction table = table_;
-  for (Rgba& entry : table.entries) {
-    const double alpha = double(entry[3]);
-    const double seen = -std::expm1(step * std::log1p(-alpha));
-    const double share = alpha > 0 ? seen / alpha : step;
-    for (std::size_t k = 0; k < 3; ++k) entry[k] = float(share * double(entry[k]));
-    entry[3] = float(seen);
-  }
-  return table;
+std::span<const volume::OrbitCamera> Scene::cameras() {
+  static constexpr std::array<volume::OrbitCamera, 5> fixed{
+      {{35, 25, 3}, {-70, 8, 2.4}, {150, 60, 3.5}, {215, -35, 2}, {0, 0, 4}}};
+  return fixed;
 }
 
-volume::RenderRequest Scene::request(double step, volume::Method method, double termination) const {
-  volume::RenderRequest request = orbit_request(description_, spacing_, camera(), edge_, edge_, step);
-  request.classification = table_for(step);
+volume::RenderRequest Scene::request(double step, volume::Method method, double termination,
+                                     const volume::OrbitCamera& camera) const {
+  volume::RenderRequest request = orbit_request(description_, spacing_, camera, edge_, edge_, step);
+  request.classification = opacity_corrected(
+      table_, step, method == volume::Method::pre_integrated ? most_entries_of_segments : most_entries);
   request.method = method;
   request.termination = float(termination);
+  request.steps->cover_whole_ray = may_cover_whole_rays(request);
   return request;
-}
-
-const volume::OrbitCamera& Scene::camera() {
-  static constexpr volume::OrbitCamera fixed{35, 25, 3};
-  return fixed;
 }
 
 const char* Scene::texel_type() const {
@@ -197,7 +208,8 @@ void Scene::hand_out(const std::filesystem::path& texels, const std::filesystem:
   volume::Vec3 extent{};
   for (std::size_t k = 0; k < 3; ++k) extent[k] = description_.size[k] * spacing_[k];
   const double radius = volume::length(extent) / 2, finest = *std::ranges::min_element(spacing_);
-  const volume::Vec3 centre = volume::scale(extent, 0.5), back = eye_direction(camera());
+  const volume::OrbitCamera& camera = cameras().front();
+  const volume::Vec3 centre = volume::scale(extent, 0.5), back = eye_direction(camera);
   const nlohmann::json json{{"volume", std::filesystem::absolute(texels).string()},
                             {"size", description_.size},
                             {"type", texel_type()},
@@ -207,12 +219,12 @@ void Scene::hand_out(const std::filesystem::path& texels, const std::filesystem:
                             {"knots", control_points},
                             {"unit_distance", finest},
                             {"sample_distance", finest},
-                            {"eye", volume::add(centre, volume::scale(back, camera().distance * radius))},
+                            {"eye", volume::add(centre, volume::scale(back, camera.distance * radius))},
                             {"centre", centre},
                             {"up", {0, 0, 1}},
                             {"angle", volume::orbit_field_of_view},
-                            {"near", (camera().distance - 1.01) * radius},
-                            {"far", (camera().distance + 1.01) * radius},
+                            {"near", (camera.distance - 1.01) * radius},
+                            {"far", (camera.distance + 1.01) * radius},
                             {"pixels", edge_}};
   std::ofstream file(description);
   file << json.dump();
@@ -224,18 +236,47 @@ void Scene::hand_out(const std::filesystem::path& texels, const std::filesystem:
 
 void Scene::integrate(const std::function<void(double done)>& progress) {
   const auto start = std::chrono::steady_clock::now();
-  const volume::RenderRequest one_voxel = request(1, volume::Method::post_classified, 0);
-  const volume::Medium medium = volume::Medium::of_samples(table_, 1);
   const int across = rays_across();
-  exact_.assign(std::size_t(across) * std::size_t(across), {});
-  std::atomic<int> rows = 0;
-  tbb::parallel_for(0, across, [&](int row) {
-    for (int column = 0; column < across; ++column)
+  const int rows = across * int(cameras().size());
+  exact_.assign(std::size_t(rows) * std::size_t(across), {});
+  std::vector<volume::RenderRequest> one_voxel;
+  for (const volume::OrbitCamera& camera : cameras())
+    one_voxel.push_back(request(1, volume::Method::post_classified, 0, camera));
+  const volume::Medium medium = volume::Medium::of_samples(table_, 1);
+  std::vector<double> changes(std::size_t(rows), 0);
+  std::atomic<int> rows_done = 0;
+  tbb::parallel_for(0, rows, [&](int row) {
+    const volume::RenderRequest& seen = one_voxel[std::size_t(row / across)];
+    const int y = pixel(row % across);
+    for (int column = 0; column < across; ++column) {
+      const int x = pixel(column);
       exact_[std::size_t(row) * std::size_t(across) + std::size_t(column)] =
-          pixel_integral(field_, description_.size, one_voxel, medium, pixel(column), pixel(row));
-    progress(double(++rows) / across);
+          pixel_integral(field_, description_.size, seen, medium, x, y);
+      changes[std::size_t(row)] = std::max(changes[std::size_t(row)], greatest_change(seen, x, y));
+    }
+    progress(double(++rows_done) / rows);
   });
+  stiffness_ = {greatest_depth(table_), *std::ranges::max_element(changes)};
   reference_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double Scene::greatest_change(const volume::RenderRequest& one_voxel, int x, int y) const {
+  const auto ray = volume::pixel_ray(one_voxel, x, y);
+  if (!ray) return 0;
+  double greatest = 0;
+  std::optional<double> before;
+  for (double at = one_voxel.steps->first; at <= ray->length; ++at) {
+    const double opacity = sample_of(table_, field_(ray->at(at / ray->length))[0])[3];
+    if (before) greatest = std::max(greatest, std::abs(opacity - *before));
+    before = opacity;
+  }
+  return greatest;
+}
+
+double Scene::greatest_bound(const volume::RenderRequest& request, double step) const {
+  volume::RenderRequest bounding = request;
+  bounding.bound_of = {table_, step};
+  return double(std::ranges::max(error_bounds(*store_, *variation_, bounding, stride_)));
 }
 
 Scene::Rays Scene::compared(const volume::Image& image) const {
@@ -249,20 +290,22 @@ Scene::Rays Scene::compared(const volume::Image& image) const {
 }
 
 Scene::Rays Scene::in_eight_bits(double step) const {
-  const volume::RenderRequest asked = request(step, volume::Method::post_classified, 0);
-  const TransferFunction table = table_for(step);
+  std::vector<volume::RenderRequest> asked;
+  for (const volume::OrbitCamera& camera : cameras())
+    asked.push_back(request(step, volume::Method::post_classified, 0, camera));
+  const TransferFunction table = opacity_corrected(table_, step, table_entries);
   const int across = rays_across();
-  Rays rays(std::size_t(across) * std::size_t(across));
-  tbb::parallel_for(0, across, [&](int row) {
+  const int rows = across * int(cameras().size());
+  Rays rays(std::size_t(rows) * std::size_t(across));
+  tbb::parallel_for(0, rows, [&](int row) {
+    const volume::RenderRequest& seen = asked[std::size_t(row / across)];
     for (int column = 0; column < across; ++column) {
-      const auto ray = volume::pixel_ray(asked, pixel(column), pixel(row));
+      const auto ray = volume::pixel_ray(seen, pixel(column), pixel(row % across));
       if (!ray) continue;
       std::array<double, 4>& shown = rays[std::size_t(row) * std::size_t(across) + std::size_t(column)];
-      for (int i = int(std::floor(ray->length - asked.steps->first)); i >= 0; --i) {
-        const double share = (asked.steps->first + i) / ray->length;
-        volume::Vec3 t{};
-        for (std::size_t k = 0; k < 3; ++k) t[k] = ray->from[k] + share * (ray->to[k] - ray->from[k]);
-        const std::array<double, 4> sample = sample_of(table, field_(t)[0]);
+      for (int i = int(std::floor(ray->length - seen.steps->first)); i >= 0; --i) {
+        const std::array<double, 4> sample =
+            sample_of(table, field_(ray->at((seen.steps->first + i) / ray->length))[0]);
         for (std::size_t k = 0; k < 4; ++k) shown[k] = in_bytes(sample[k] + (1 - sample[3]) * shown[k]);
       }
     }

@@ -30,10 +30,13 @@ using namespace study;
 namespace fs = std::filesystem;
 
 constexpr int quick_edge = 256, whole_edge = 512;
-constexpr int quick_stride = 6, whole_stride = 6;
-constexpr int quick_repetitions = 5, whole_repetitions = 9;
+constexpr int quick_stride = 13, whole_stride = 13;
+/// Images that are timed, of all cameras in turn.
+constexpr int quick_repetitions = 5, whole_repetitions = 15;
 /// Of all work on a scene, the part that its reference takes.
 constexpr double reference_share = 0.6;
+/// And that of our settings.
+constexpr double settings_share = 0.3;
 constexpr int page_patience_ms = 120000;
 
 struct StudyArguments {
@@ -107,7 +110,7 @@ std::vector<SceneDescription> scenes_of(const StudyArguments& arguments) {
 
 /// From black (nothing) over red and yellow to white (a tenth and more), a decade a fifth of the way.
 void write_error_map(const fs::path& path, const Scene& scene, const Scene::Rays& rays) {
-  constexpr int pixels_a_ray = 6;
+  constexpr int pixels_a_ray = 12;
   const int across = scene.rays_across();
   RgbaImage image;
   image.width = image.height = across * pixels_a_ray;
@@ -123,6 +126,10 @@ void write_error_map(const fs::path& path, const Scene& scene, const Scene::Rays
       for (int k = 0; k < 3; ++k) image.pixel(x, y)[k] = std::clamp(3 * heat - float(k), 0.0F, 1.0F);
     }
   write_png(path, image);
+}
+
+bool is_ours(const Setting& setting) {
+  return !is_other_program(setting.scheme) && setting.scheme != Scheme::eight_bit_slices;
 }
 
 bool has_error_map(const Setting& setting) {
@@ -146,34 +153,56 @@ std::vector<Setting> missing_settings(SceneResults& results, bool quick, OtherPr
   return missing;
 }
 
-/// Adds the point of `setting`, and its error map where there is one. False where another program fails.
-bool study_setting(const Setting& setting, Scene& scene, SceneResults& results, const fs::path& folder,
-                   bool quick, OtherPrograms* others) {
+/// Where there is one for `setting`, of the first camera's rays.
+void add_error_map(const Setting& setting, const Scene& scene, const Scene::Rays& rays, SceneResults& results,
+                   const fs::path& folder) {
+  if (!has_error_map(setting)) return;
+  std::string file = fmt::format("{}_{}.png", results.name, text_of(setting));
+  std::ranges::replace_if(
+      file, [](char c) { return std::string_view(" ,()'").find(c) != std::string_view::npos; }, '-');
+  write_error_map(folder / file, scene, rays);
+  results.error_maps[text_of(setting)] = file;
+}
+
+/// Settings of ours: first the error of each, then their times, for which they take turns.
+void study_ours(const std::vector<Setting>& ours, const Scene& scene, SceneResults& results,
+                const fs::path& folder, int repetitions, const std::function<void(double done)>& progress) {
+  std::vector<std::unique_ptr<Measurement>> measurements;
+  const auto work = double(ours.size() * std::size_t(1 + repetitions));
+  double done = 0;
+  for (const Setting& setting : ours) {
+    progress(done++ / work);
+    measurements.push_back(std::make_unique<Measurement>(scene, setting));
+    add_error_map(setting, scene, measurements.back()->rays(), results, folder);
+  }
+  for (int round = 0; round < repetitions; ++round) {
+    for (const auto& measurement : measurements) {
+      progress(done++ / work);
+      measurement->render();
+    }
+  }
+  for (const auto& measurement : measurements) results.points.push_back(measurement->point());
+}
+
+/// Adds the point of another program, or of slices in eight bits, and its error map where there is one.
+void study_other(const Setting& setting, const Scene& scene, SceneResults& results, const fs::path& folder,
+                 OtherPrograms* others) {
   Scene::Rays rays;
   try {
-    results.points.push_back(
-        is_other_program(setting.scheme)
-            ? others->measure(scene, setting, rays)
-            : measure(scene, setting, quick ? quick_repetitions : whole_repetitions, rays));
+    results.points.push_back(is_other_program(setting.scheme) ? others->measure(scene, setting, rays)
+                                                              : measure(scene, setting, 0, rays));
   } catch (const std::runtime_error& error) {
     if (!is_other_program(setting.scheme)) throw;
     results.absent[name_of(setting.scheme)] = error.what();
-    return false;
+    return;
   }
-  if (has_error_map(setting)) {
-    std::string file = fmt::format("{}_{}.png", results.name, text_of(setting));
-    std::ranges::replace_if(
-        file, [](char c) { return std::string_view(" ,()'").find(c) != std::string_view::npos; }, '-');
-    write_error_map(folder / file, scene, rays);
-    results.error_maps[text_of(setting)] = file;
-  }
-  return true;
+  add_error_map(setting, scene, rays, results, folder);
 }
 
 void study_scene(const SceneDescription& description, SceneResults& results, Results& all,
                  const fs::path& folder, const StudyArguments& arguments, OtherPrograms* others,
                  bool with_savings, StudyProgress& progress) {
-  const std::vector<Setting> missing = missing_settings(results, arguments.quick, others);
+  std::vector<Setting> missing = missing_settings(results, arguments.quick, others);
   const bool optimizations_of =
       with_savings &&
       (results.savings.empty() ||
@@ -196,14 +225,17 @@ void study_scene(const SceneDescription& description, SceneResults& results, Res
   results.size = scene.size();
   results.rays = int(scene.exact().size());
   results.reference_seconds = scene.reference_seconds();
-  for (std::size_t i = 0; i < missing.size(); ++i) {
-    const Setting& setting = missing[i];
-    progress.show(reference_share + (1 - reference_share) * double(i) / double(missing.size()),
-                  text_of(setting));
-    if (!study_setting(setting, scene, results, folder, arguments.quick, others)) continue;
-    mark_front(results.points);
-    write_results(folder, all);
+  results.stiffness = scene.stiffness();
+  const auto others_begin = std::ranges::stable_partition(missing, is_ours).begin();
+  study_ours({missing.begin(), others_begin}, scene, results, folder,
+             arguments.quick ? quick_repetitions : whole_repetitions,
+             [&](double done) { progress.show(reference_share + settings_share * done, "settings"); });
+  for (auto setting = others_begin; setting != missing.end(); ++setting) {
+    progress.show(reference_share + settings_share, text_of(*setting));
+    study_other(*setting, scene, results, folder, others);
   }
+  mark_front(results.points);
+  write_results(folder, all);
 }
 
 /// index.html, by the script beside the programs.
@@ -292,12 +324,16 @@ int run_study(const StudyArguments& arguments) {
     study_scene(scene, *found, results, folder, arguments, others ? &*others : nullptr, with_savings, progress);
   }
   for (const SceneResults& scene : results.scenes) {
-    fmt::print("{}: {} rays, reference {:.1f} s ({:.0f} rays/s)\n", scene.name, scene.rays,
-               scene.reference_seconds, scene.rays / std::max(scene.reference_seconds, 1e-9));
+    fmt::print(
+        "{}: {} rays, reference {:.1f} s ({:.0f} rays/s); a voxel's optical depth up to {:.3g}, opacity "
+        "changes "
+        "by up to {:.3g} from voxel to voxel\n",
+        scene.name, scene.rays, scene.reference_seconds, scene.rays / std::max(scene.reference_seconds, 1e-9),
+        scene.stiffness.depth, scene.stiffness.change);
     for (const Point& point : scene.points)
       if (point.front)
-        fmt::print("  {:<44} {:8.2f} ms   RMS {:.1e}   max {:.1e}\n", text_of(point.setting), point.time_ms,
-                   point.error.rms, point.error.max);
+        fmt::print("  {:<44} {:8.2f} ms   RMS {:.1e}   99 % {:.1e}   max {:.1e}\n", text_of(point.setting),
+                   point.time_ms, point.error.rms, point.error.quantiles[2], point.error.max);
     print_advantages(scene);
     print_savings(scene);
   }

@@ -60,6 +60,8 @@ def work_precision(scene):
             early = [point for point in points if point["termination"] >= FINEST]
             axes.loglog([p["time_ms"] for p in whole], [p["rms_colour"] for p in whole], "o-", color=colour, label=scheme)
             for p in whole:
+                axes.loglog(p["time_quartiles_ms"], [p["rms_colour"]] * 2, "-", color=colour, linewidth=4, alpha=0.3)
+            for p in whole:
                 axes.annotate(f"{p['step']:g}", (p["time_ms"], p["rms_colour"]), fontsize=7, textcoords="offset points",
                               xytext=(4, 4), color=colour)
             axes.loglog([p["time_ms"] for p in early], [p["rms_colour"] for p in early], "x", color=colour, markersize=5,
@@ -79,14 +81,24 @@ def work_precision(scene):
     return plot(draw, f"{scene['name']}: error over time")
 
 
+def range_of(order):
+    return f"{order['steps'][0]:g} to {order['steps'][1]:g}"
+
+
 def convergence(scene):
     def draw(axes):
         for scheme, colour in COLOURS.items():
             points = [point for point in of_scheme(timed(scene), scheme) if point["termination"] < FINEST]
             order = scene["orders"].get(scheme)
-            label = scheme + (f", slope {order:.2f}" if order is not None else "")
+            label = scheme + (f", slope {order['slope']:.2f} over {range_of(order)}" if order is not None else "")
             axes.loglog([p["step"] for p in points], [p["rms"] for p in points], "o-", color=colour, label=label)
+            axes.loglog([p["step"] for p in points], [p["quantiles"][2] for p in points], "--", color=colour, linewidth=1,
+                        label="99 % of rays are below")
             axes.loglog([p["step"] for p in points], [p["max"] for p in points], ":", color=colour, label="its maximum")
+            bounded = [p for p in points if p["bound"]]
+            if bounded:
+                axes.loglog([p["step"] for p in bounded], [p["bound"] for p in bounded], "-.", color=colour, linewidth=1,
+                            label="certified bound of that")
         axes.set_xlabel("step in voxels")
         axes.set_ylabel("error against the integral")
     return plot(draw, f"{scene['name']}: error over step")
@@ -115,17 +127,23 @@ def advantages(study):
 
 
 def table(scene):
-    rows = ["<tr><th>setting<th>RMS<th>max<th>PSNR<th>ms<th>ns a ray<th>samples taken<th>left out</tr>"]
+    rows = ["<tr><th>setting<th>RMS<th>of 95 %<th>median<th>95 %<th>99 %<th>max<th>certified bound<th>PSNR<th>ms<th>quartiles<th>ns a ray"
+            "<th>samples taken<th>left out</tr>"]
     for point in sorted(scene["points"], key=lambda p: (p["time_ms"] is None, p["time_ms"])):
         psnr = f"{-20 * math.log10(point['rms']):.1f} dB" if point["rms"] > 0 else "∞"
         left_out = f"{100 * (1 - point['samples_taken'] / point['samples']):.0f} %" if point["samples"] else "–"
         ending = f", ends below {point['termination']:g}" if point["termination"] >= FINEST else ""
-        time = "–<td>–" if point["time_ms"] is None else f"{point['time_ms']:.2f}<td>{point['ns_per_ray']:.0f}"
+        quartiles = " to ".join(f"{time:.2f}" for time in point["time_quartiles_ms"])
+        time = ("–<td>–<td>–" if point["time_ms"] is None
+                else f"{point['time_ms']:.2f}<td>{quartiles if point['scheme'] not in OTHERS else '–'}<td>{point['ns_per_ray']:.0f}")
+        interval = " to ".join(f"{bound:.1e}" for bound in point["rms_interval"])
+        bound = f"{point['bound']:.1e} ({point['bound'] / point['max']:.1f}×)" if point["bound"] and point["max"] > 0 else "–"
+        quantiles = "".join(f"<td>{quantile:.1e}" for quantile in point["quantiles"])
         setting = html.escape(point["scheme"])
         if point["scheme"] not in OTHERS:
             setting += f", step {point['step']:g}{ending}"
         rows.append(f"<tr{' class=front' if point['front'] else ''}><td>{setting}"
-                    f"<td>{point['rms']:.1e}<td>{point['max']:.1e}<td>{psnr}<td>{time}"
+                    f"<td>{point['rms']:.1e}<td>{interval}{quantiles}<td>{point['max']:.1e}<td>{bound}<td>{psnr}<td>{time}"
                     f"<td>{point['samples_taken'] or '–'}<td>{left_out}</tr>")
     return "<table>" + "\n".join(rows) + "</table>"
 
@@ -137,7 +155,9 @@ def section(scene, folder):
     rate = scene["rays"] / max(scene["reference_seconds"], 1e-9)
     return (f"<h2>{html.escape(scene['name'])}</h2><p>{html.escape(scene['shows'])}. "
             f"{html.escape(Path(scene['volume']).name)}, {size} voxels; {scene['rays']} rays compared, their reference "
-            f"took {scene['reference_seconds']:.1f} s ({rate:.0f} rays a second).</p>"
+            f"took {scene['reference_seconds']:.1f} s ({rate:.0f} rays a second). A voxel's optical depth is up to "
+            f"{scene['stiffness']['depth']:.3g}, and the table's opacity changes by up to {scene['stiffness']['change']:.3g} "
+            "from one sample to the next, a voxel on.</p>"
             f"{work_precision(scene)}{convergence(scene)}<div>{maps}</div>"
             f"<details><summary>all settings</summary>{table(scene)}</details>")
 
@@ -164,9 +184,13 @@ def savings(study):
 def main():
     folder = Path(sys.argv[1])
     study = json.loads((folder / "study.json").read_text(encoding="utf-8"))
-    orders = "".join(f"<tr><td>{html.escape(scene['name'])}"
-                     + "".join(f"<td>{scene['orders'][scheme]:.2f}" if scheme in scene["orders"] else "<td>–"
-                               for scheme in COLOURS) + "</tr>" for scene in study["scenes"])
+    orders = "".join(f"<tr><td>{html.escape(scene['name'])}<td>{scene['stiffness']['depth']:.3g}"
+                     f"<td>{scene['stiffness']['change']:.3g}"
+                     + "".join(f"<td>{order['slope']:.2f} ({range_of(order)})" if order else "<td>–"
+                               for order in (scene["orders"].get(scheme) for scheme in COLOURS))
+                     + "</tr>" for scene in study["scenes"])
+    origin = study["origin"]
+    machine = origin["machine"]
     text = f"""<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Error against run time</title>
 <style>body {{ font: 15px/1.45 sans-serif; max-width: 1300px; margin: 2em auto; padding: 0 1em }}
 table {{ border-collapse: collapse }} td, th {{ padding: 2px 9px; text-align: right; border-bottom: 1px solid #ddd }}
@@ -174,10 +198,14 @@ td:first-child, th:first-child, .name {{ text-align: left }} .front {{ font-weig
 figure {{ display: inline-block; margin: 4px }} figcaption {{ font-size: 12px; text-align: center }}
 figure img {{ image-rendering: pixelated; width: 200px }}</style>
 <h1>Error against run time</h1>
-<p>{study['edge']}² pixels, {study['instruction_set']}. Errors are of premultiplied colour and opacity, in float, against the
-integral of the table as viewers mean it, in double precision; times are medians on all cores, the table prepared. Numbers at
-points are steps in voxels. Dashed: what slices blended into eight bits would show, whatever their time. Red: what other
-programs show of the same scene, with one sample a voxel; of these, errors are of colour alone. Maps: black 1e-6, red 1e-4,
+<p>{html.escape(machine['processor'])}, {machine['processors']} processors, {study['instruction_set']}; Understudy
+{html.escape(origin['version'])}, {html.escape(origin['commit'])}, {html.escape(origin['compiler'])}; {html.escape(origin['time'])}.</p>
+<p>{study['edge']}² pixels from {len(study['cameras'])} cameras. Errors are of premultiplied colour and opacity, in float, against the
+integral of the table as viewers mean it, in double precision; intervals of the RMS are by bootstrap over rays. Times are medians
+on all cores, the table prepared; settings take turns, and a light bar reaches from quartile to quartile. Numbers at points are
+steps in voxels. Dashed: what slices blended into eight bits would show, whatever their time. Red: what other
+programs show of the same scene from the first camera, with one sample a voxel; of these, errors are of colour alone. Maps of the first
+camera: black 1e-6, red 1e-4,
 white 0.1 and more.</p>
 <h2>Beside other programs</h2>
 {advantages(study)}
@@ -187,8 +215,9 @@ of our settings is as exact, or as fast. The bare viewer draws slices by OpenGL 
 {savings(study)}
 <p>Frames of the bundled viewer under Understudy, as usual, and with one item done nevertheless. Of samples, all are those
 that the rays have; differences are the greatest of any channel of any frame, in float.</p>
-<h2>Observed order of accuracy</h2>
-<table><tr><th>scene{"".join(f"<th>{scheme}" for scheme in COLOURS)}</tr>{orders}</table><p>Theory: {EXPECTED}.</p>
+<h2>Stiffness, and observed order of accuracy</h2>
+<table><tr><th>scene<th>optical depth of a voxel<th>change of opacity a voxel{"".join(f"<th>{scheme}" for scheme in COLOURS)}</tr>{orders}</table><p>Theory: {EXPECTED}.
+An order is the slope over the steps in brackets, in voxels: the asymptotic range, in which slopes from step to step agree.</p>
 {"".join(section(scene, folder) for scene in study["scenes"])}</html>
 """
     part = folder / "index.html.part"

@@ -51,9 +51,10 @@ std::vector<std::string> viewer_command(const Scene& scene, const fs::path& fold
   option("--type", scene.texel_type());
   option("--spacing", spacing[0], spacing[1], spacing[2]);
   option("--table", description_in(folder).string());
-  option("--azimuth", Scene::camera().azimuth);
-  option("--elevation", Scene::camera().elevation);
-  option("--distance", Scene::camera().distance / 2);  // it counts whole diagonals
+  const volume::OrbitCamera& camera = Scene::cameras().front();
+  option("--azimuth", camera.azimuth);
+  option("--elevation", camera.elevation);
+  option("--distance", camera.distance / 2);  // it counts whole diagonals
   option("--window-size", scene.edge(), scene.edge());
   for (const char* flag : {"--offscreen", "--no-frame"}) arguments.emplace_back(flag);
   return arguments;

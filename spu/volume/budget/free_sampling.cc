@@ -9,6 +9,7 @@
 
 #include "volume/footprint.h"
 #include "volume/matrix.h"
+#include "volume/opacity_correction.h"
 
 namespace understudy::spu {
 namespace {
@@ -63,28 +64,6 @@ double steps_along(const volume::RaySteps& steps, const Vec3& way) {
   return volume::length(in_steps);
 }
 
-/// The function for samples `step` steps apart. Between its entries opacity is linear for whole steps, and so
-/// it is not for others: there are more entries then, as many as fit.
-TransferFunction stepped(const TransferFunction& whole, double step, std::size_t most_entries) {
-  const std::size_t pieces = std::max<std::size_t>(whole.entries.size() - 1, 1);
-  const std::size_t parts = step == 1 ? 1 : std::max<std::size_t>(1, (most_entries - 1) / pieces);
-  TransferFunction function{whole.low, whole.high, {}};
-  function.entries.reserve(pieces * parts + 1);
-  for (std::size_t i = 0; i <= pieces * parts; ++i) {
-    const std::size_t below = std::min(i / parts, whole.entries.size() - 2);
-    const double share = double(i - below * parts) / double(parts);
-    std::array<double, 4> entry{};
-    for (std::size_t k = 0; k < 4; ++k)
-      entry[k] = std::lerp(double(whole.entries[below][k]), double(whole.entries[below + 1][k]), share);
-    const double alpha = std::min(entry[3], 1.0);
-    const double seen = alpha < 1 ? -std::expm1(step * std::log1p(-alpha)) : 1;
-    const double scale = alpha > 0 ? seen / alpha : step;
-    function.entries.push_back(
-        {float(entry[0] * scale), float(entry[1] * scale), float(entry[2] * scale), float(seen)});
-  }
-  return function;
-}
-
 }  // namespace
 
 std::string name_of(const Setting& setting) {
@@ -123,6 +102,7 @@ RenderRequest placed_as(const Meaning& meaning, const Setting& setting) {
   request.steps->first = setting.method == volume::Method::pre_integrated ? 0 : 0.5;
   request.method = setting.method;
   if (request.termination > 0) request.termination = setting.termination;  // else rays go to their end
+  request.steps->cover_whole_ray = may_cover_whole_rays(request);
   request.may_travel_as_halves = setting.as_halves;
   return request;
 }
@@ -130,7 +110,8 @@ RenderRequest placed_as(const Meaning& meaning, const Setting& setting) {
 TransferFunction table_as(const Meaning& meaning, const Setting& setting) {
   // Tables of segments take time in the square of their entries.
   const std::size_t most_entries = setting.method == volume::Method::pre_integrated ? 512 : 1024;
-  return stepped(std::get<TransferFunction>(meaning.request.classification), setting.step, most_entries);
+  return volume::opacity_corrected(std::get<TransferFunction>(meaning.request.classification), setting.step,
+                                   most_entries);
 }
 
 RenderRequest sampled_as(const Meaning& meaning, const Setting& setting) {

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volume/error_bound/field_variation.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+namespace understudy::volume {
+namespace {
+
+using LatticePoint = std::array<int, 3>;
+
+/// The store's texels by lattice point; beyond what is held the nearest one.
+class HeldTexels {
+ public:
+  explicit HeldTexels(const BrickStore& store) : store_(store) {
+    constexpr int block = BrickStore::block_cells;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low_[axis] = store.first_block()[axis] * block;
+      high_[axis] = std::min(low_[axis] + store.block_counts()[axis] * block, store.lattice().cells[axis]);
+    }
+  }
+
+  const LatticePoint& low() const { return low_; }
+  /// The last lattice point that is held.
+  const LatticePoint& high() const { return high_; }
+
+  float at(LatticePoint p) const {
+    constexpr int block = BrickStore::block_cells;
+    std::size_t index = 0, stride = 1;
+    int texel = 0, texel_stride = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int from_low = std::clamp(p[axis], low_[axis], high_[axis]) - low_[axis];
+      const int of_block = std::min(from_low / block, store_.block_counts()[axis] - 1);
+      index += std::size_t(of_block) * stride;
+      texel += (from_low - of_block * block) * texel_stride;
+      stride *= std::size_t(store_.block_counts()[axis]);
+      texel_stride *= BrickStore::block_row;
+    }
+    const std::byte* const texels = store_.block_data()[index];
+    switch (store_.description().type) {
+      case TexelType::u8:
+        return float(std::to_integer<int>(texels[texel]));
+      case TexelType::u16:
+        return read<std::uint16_t>(texels, texel);
+      case TexelType::f32:
+        return read<float>(texels, texel);
+      case TexelType::rgba8:
+        break;
+    }
+    return std::numeric_limits<float>::quiet_NaN();
+  }
+
+ private:
+  template <typename Texel>
+  static float read(const std::byte* texels, int index) {
+    Texel texel;
+    std::memcpy(&texel, texels + std::size_t(index) * sizeof texel, sizeof texel);
+    return float(texel);
+  }
+
+  const BrickStore& store_;
+  LatticePoint low_{}, high_{};
+};
+
+/// The greater one; infinite where `value` is no number.
+void raise(float& most, float value) {
+  most = std::isnan(value) ? std::numeric_limits<float>::infinity() : std::max(most, std::abs(value));
+}
+
+LatticePoint moved(LatticePoint p, std::size_t axis, int by) {
+  p[axis] += by;
+  return p;
+}
+
+/// Of one cell, whose low corner is `p`.
+void raise_by_cell(const HeldTexels& texels, const LatticePoint& p, Variation& variation) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
+    for (const int i : {0, 1})
+      for (const int j : {0, 1}) {
+        const LatticePoint edge = moved(moved(p, a, i), b, j);
+        raise(variation.slope[axis], texels.at(moved(edge, axis, 1)) - texels.at(edge));
+      }
+    // The faces across the axis: the derivative along it jumps there, and the others twist in them.
+    for (const int side : {0, 1}) {
+      const LatticePoint face = moved(p, axis, side);
+      for (const int i : {0, 1})
+        for (const int j : {0, 1}) {
+          const LatticePoint at = moved(moved(face, a, i), b, j);
+          raise(variation.bend[axis], (texels.at(moved(at, axis, 1)) - texels.at(at)) -
+                                          (texels.at(at) - texels.at(moved(at, axis, -1))));
+        }
+      raise(variation.twist, (texels.at(moved(moved(face, a, 1), b, 1)) - texels.at(moved(face, a, 1))) -
+                                 (texels.at(moved(face, b, 1)) - texels.at(face)));
+    }
+  }
+}
+
+}  // namespace
+
+FieldVariation::FieldVariation(const BrickStore& store) {
+  if (store.empty()) return;
+  const HeldTexels texels(store);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    first_[axis] = texels.low()[axis] / cube_cells;
+    const int cells = std::max(texels.high()[axis] - texels.low()[axis], 1);
+    counts_[axis] = (cells + cube_cells - 1) / cube_cells;
+  }
+  cubes_.resize(std::size_t(counts_[0]) * std::size_t(counts_[1]) * std::size_t(counts_[2]));
+  tbb::parallel_for(0, counts_[2], [&](int z) {
+    std::size_t index = std::size_t(z) * std::size_t(counts_[1]) * std::size_t(counts_[0]);
+    for (int y = 0; y < counts_[1]; ++y)
+      for (int x = 0; x < counts_[0]; ++x, ++index) {
+        const LatticePoint low{(first_[0] + x) * cube_cells, (first_[1] + y) * cube_cells,
+                               (first_[2] + z) * cube_cells};
+        for (int k = 0; k < cube_cells; ++k)
+          for (int j = 0; j < cube_cells; ++j)
+            for (int i = 0; i < cube_cells; ++i)
+              raise_by_cell(texels, {low[0] + i, low[1] + j, low[2] + k}, cubes_[index]);
+      }
+  });
+}
+
+Variation FieldVariation::between(const std::array<float, 3>& a, const std::array<float, 3>& b) const {
+  std::array<int, 3> low{}, high{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto cube = [&](float at) {
+      const float clamped = std::clamp(at, -1e6F, 1e9F) / float(cube_cells);
+      return std::clamp(int(std::floor(clamped)) - first_[axis], 0, counts_[axis] - 1);
+    };
+    low[axis] = cube(std::min(a[axis], b[axis]));
+    high[axis] = cube(std::max(a[axis], b[axis]));
+  }
+  Variation all;
+  for (int z = low[2]; z <= high[2]; ++z)
+    for (int y = low[1]; y <= high[1]; ++y)
+      for (int x = low[0]; x <= high[0]; ++x) {
+        const std::size_t row = std::size_t(z) * std::size_t(counts_[1]) + std::size_t(y);
+        const Variation& cube = cubes_[row * std::size_t(counts_[0]) + std::size_t(x)];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          all.slope[axis] = std::max(all.slope[axis], cube.slope[axis]);
+          all.bend[axis] = std::max(all.bend[axis], cube.bend[axis]);
+        }
+        all.twist = std::max(all.twist, cube.twist);
+      }
+  return all;
+}
+
+}  // namespace understudy::volume

@@ -110,7 +110,7 @@ Outcome outcome_of(unsigned seed) {
   Outcome outcome;
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 24; ++x) {
-      const double bound = double(bounds[std::size_t(24 * y + x)]);
+      const double bound = double(bounds[std::size_t(24) * std::size_t(y) + std::size_t(x)]);
       outcome.bound = std::max(outcome.bound, bound);
       if ((x + 3 * y) % 11 != 0) continue;
       const auto exact = pixel_integral(field, texture.description.size, unit, medium, x, y);

@@ -64,7 +64,8 @@ AlongRay along_ray(const Ray& ray, const Place& from, const Place& to, double le
     // Faces of cells between the two places, or so close that rounding may pass them.
     constexpr double rounding = 1e-3;
     const auto [low, high] = std::minmax(double(from[axis]), double(to[axis]));
-    for (double face = std::ceil(low - rounding); face <= high + rounding; ++face) {
+    const auto first = int(std::ceil(low - rounding)), last = int(std::floor(high + rounding));
+    for (int face = first; face <= last; ++face) {
       const double share = high > low ? (face - low) / (high - low) : 0.5;
       along.bend += jump;
       along.weighted += jump * peano_kernel(from[axis] < to[axis] ? share : 1 - share);
@@ -256,7 +257,7 @@ void bound_rays(const BoundScene& bound_scene, const FieldVariation& field, cons
       set_up_packet(bound_scene.setup, request, rays.x + x, rays.y + y, width, height, packet);
       for (int j = 0; j < height; ++j)
         for (int i = 0; i < width; ++i) {
-          const auto r = std::size_t(j * tile_width + i);
+          const auto r = std::size_t(j) * std::size_t(tile_width) + std::size_t(i);
           if (packet.first[r] > packet.last[r]) continue;
           Ray ray;
           for (std::size_t axis = 0; axis < 3; ++axis) {

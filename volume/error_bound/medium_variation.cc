@@ -246,7 +246,7 @@ class MediumVariation::Ranges {
 
   /// Of the pieces first .. end - 1, and of what is `below` and `above` the function's ends.
   MediumBounds over(std::size_t first, std::size_t end, bool below, bool above) const {
-    const auto level = std::size_t(std::bit_width(end - first) - 1);
+    const auto level = std::size_t(std::bit_width(std::max<std::size_t>(end - first, 1)) - 1);
     Extremes all = extremes_[level][first];
     all.add(extremes_[level][end - (std::size_t(1) << level)]);
     MediumBounds bounds;
@@ -287,8 +287,9 @@ MediumVariation::MediumVariation(const TransferFunction& function, double step,
   }
   fill_invisible(pieces);
   const Ranges ranges(pieces);
-  for (double radius = 1.0 / 16; radius < 2 * double(entries_); radius *= std::sqrt(2.0))
-    radii_.push_back(radius);
+  constexpr double least_radius = 1.0 / 16;
+  radii_.push_back(least_radius);
+  while (radii_.back() < 2 * double(entries_)) radii_.push_back(radii_.back() * std::sqrt(2.0));
   by_radius_.resize(radii_.size());
   const auto last = double(pieces.size());
   tbb::parallel_for(std::size_t(0), radii_.size(), [&](std::size_t r) {

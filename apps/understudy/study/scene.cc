@@ -265,8 +265,10 @@ double Scene::greatest_change(const volume::RenderRequest& one_voxel, int x, int
   if (!ray) return 0;
   double greatest = 0;
   std::optional<double> before;
-  for (double at = one_voxel.steps->first; at <= ray->length; ++at) {
-    const double opacity = sample_of(table_, field_(ray->at(at / ray->length))[0])[3];
+  const auto samples = int(std::floor(ray->length - one_voxel.steps->first)) + 1;
+  for (int i = 0; i < samples; ++i) {
+    const double share = (one_voxel.steps->first + i) / ray->length;
+    const double opacity = sample_of(table_, field_(ray->at(share))[0])[3];
     if (before) greatest = std::max(greatest, std::abs(opacity - *before));
     before = opacity;
   }

@@ -226,7 +226,7 @@ void study_scene(const SceneDescription& description, SceneResults& results, Res
   results.rays = int(scene.exact().size());
   results.reference_seconds = scene.reference_seconds();
   results.stiffness = scene.stiffness();
-  const auto others_begin = std::ranges::stable_partition(missing, is_ours).begin();
+  const auto others_begin = std::stable_partition(missing.begin(), missing.end(), is_ours);
   study_ours({missing.begin(), others_begin}, scene, results, folder,
              arguments.quick ? quick_repetitions : whole_repetitions,
              [&](double done) { progress.show(reference_share + settings_share * done, "settings"); });

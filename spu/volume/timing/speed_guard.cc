@@ -23,6 +23,7 @@ void SpeedGuard::about_to_draw(std::uint64_t state, Clock::time_point now) {
   state_ = state;
   state_since_ = now;
   attempts_ = 0;
+  shown_in_state_ = false;
   refused_ms_ = 0;
 }
 
@@ -32,7 +33,7 @@ bool SpeedGuard::pauses(Clock::time_point now) const {
 }
 
 void SpeedGuard::refused(double ms, Clock::time_point now) {
-  ++attempts_;
+  attempts_ = shown_in_state_ ? first_attempts : attempts_ + 1;
   allowed_ = false;
   refused_ms_ += ms;
   slower_.clear();
@@ -48,7 +49,7 @@ void SpeedGuard::shown(double ours_ms, double native_ms, Clock::time_point now) 
     // The first image pays for what is measured once, and redeems the attempts before it.
     account_ms_ = 0;
   }
-  ever_shown_ = true;
+  ever_shown_ = shown_in_state_ = true;
   account_ms_ = std::min(account_ms_, most_saved_frames * native_ms);
   slower_.clear();
   if (account_ms_ >= 0) return;

@@ -38,7 +38,8 @@ class SpeedGuard {
   const std::string& slower() const { return slower_; }
 
   static constexpr double share_for_attempts = 0.02;
-  /// A viewer's first frames may show nothing yet, or a volume that is still being loaded.
+  /// A viewer's first frames may show nothing yet, or a volume that is still being loaded: they are a first
+  /// look. A refusal after an image was shown ends it.
   static constexpr int first_attempts = 3;
   /// Refusals that took longer in all end the first look.
   static constexpr double first_look_ms = 300;
@@ -56,6 +57,7 @@ class SpeedGuard {
   std::uint64_t state_ = 0;
   Clock::time_point state_since_{};
   int attempts_ = 0;
+  bool shown_in_state_ = false;
   double refused_ms_ = 0;
   bool ever_shown_ = false;
   bool allowed_ = false;

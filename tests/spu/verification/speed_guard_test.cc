@@ -67,6 +67,19 @@ TEST(SpeedGuard, RefusalsTakeAFiftiethOfTheTime) {
   EXPECT_TRUE(viewer.guard.slower().empty());
 }
 
+/// As a comparison that is lost when the camera moves on: nothing says that the next image would be another.
+TEST(SpeedGuard, ARefusalAfterAnImageEndsTheFirstLook) {
+  Viewer viewer;
+  viewer.guard.about_to_draw(viewer.state, viewer.now);
+  viewer.guard.shown(150, 100, viewer.now);
+  viewer.now += frame;
+  EXPECT_EQ(viewer.refused(1s, 50), 1);
+  // Another program, or other contents, are looked at anew.
+  viewer.now += 5s;
+  viewer.state = 2;
+  EXPECT_EQ(viewer.refused(1s, 50), 3);
+}
+
 TEST(SpeedGuard, ALongRefusalEndsTheFirstLook) {
   Viewer viewer;
   EXPECT_EQ(viewer.refused(10s, 2000), 1);

@@ -214,6 +214,9 @@ TEST(ErrorBound, IsForSamplesThatCoverWholeRaysInAVolumeWithAGhostLayer) {
   bad = good;
   bad.bound_of.reset();
   EXPECT_THROW(error_bounds(store, variation, bad, 1), std::invalid_argument);
+  Texture bordered = noise(describe({9, 9, 9}, TexelType::u8, Wrap::border), 3);
+  bordered.description.ghost_layer = 8;
+  EXPECT_THROW(error_bounds(filled(bordered), variation, good, 1), std::invalid_argument);
   texture.description.ghost_layer = 1;
   EXPECT_THROW(error_bounds(filled(texture), variation, good, 1), std::invalid_argument);
 }

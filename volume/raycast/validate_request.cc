@@ -118,6 +118,8 @@ void validate_bound(const VolumeDescription& volume, const RenderRequest& reques
   if (!request.bound_of) return;
   if (!request.steps || !request.steps->cover_whole_ray)
     refuse("bounds of the error are for samples that cover whole rays");
+  if (std::ranges::any_of(volume.wrap, [](Wrap wrap) { return wrap != Wrap::edge; }))
+    refuse("bounds of the error are for textures that end with their outermost texels");
   const MediumFunction& medium = *request.bound_of;
   validate_classification(volume, medium.function);
   if (!(medium.step > 0 && std::isfinite(medium.step))) refuse("a medium for a step of {}", medium.step);

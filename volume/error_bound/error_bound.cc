@@ -9,10 +9,12 @@
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "volume/error_bound/medium_variation.h"
 #include "volume/image.h"
 #include "volume/raycast/generic_field.h"
+#include "volume/raycast/occupancy_map.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/raycast/ray_setup.h"
 #include "volume/raycast/transfer_table.h"
@@ -114,6 +116,9 @@ class BoundWalk {
     for (int k = first; k <= last && transparency >= double(termination_); ++k) {
       segments_.push_back(segment_at(ray, k, k == last ? double(last_length) : 1));
       transparency *= segments_.back().transparency;
+      // A segment reaches a step before its sample, at most, and a step behind it.
+      const float empty = reader_.steps_in_empty(ray.step);
+      if (empty >= 3) k += int(std::min(empty, 1e6F)) - 2;
     }
     // What lies behind the end of a ray that has become opaque, and is not looked at.
     const bool ended = transparency < double(termination_);
@@ -227,9 +232,12 @@ class BoundWalk {
 struct BoundScene {
   BoundScene(const BrickStore& store, const RenderRequest& request)
       : table(std::get<TransferFunction>(request.classification), store.description().type, 0),
+        skip(occupancy_of(store, table)),
         setup(request, store) {
     scene.store = &store;
     scene.table = &table;
+    scene.skip = &skip;
+    scene.rounding = setup.rounding;
     scene.filter = request.filter;
     scene.top = setup.top;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -238,7 +246,15 @@ struct BoundScene {
   BoundScene(const BoundScene&) = delete;
   BoundScene& operator=(const BoundScene&) = delete;
 
+  static OccupancyMap occupancy_of(const BrickStore& store, const TransferTable& table) {
+    std::vector<bool> visible(store.blocks());
+    for (std::size_t block = 0; block < visible.size(); ++block)
+      visible[block] = table.shows(store.ranges(block).front());
+    return {store.block_counts(), std::move(visible)};
+  }
+
   TransferTable table;
+  OccupancyMap skip;
   RaySetup setup;
   Scene scene;
 };

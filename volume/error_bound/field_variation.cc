@@ -67,6 +67,30 @@ class HeldTexels {
   LatticePoint low_{}, high_{};
 };
 
+/// The texels that a row of cubes looks at: those of its cells, and one more to each side.
+class RowOfTexels {
+ public:
+  /// From the lattice point `low` on, for `cells` cells along x.
+  RowOfTexels(const HeldTexels& texels, const LatticePoint& low, int cells)
+      : low_{low[0] - 1, low[1] - 1, low[2] - 1}, width_(cells + 3) {
+    values_.reserve(std::size_t(width_) * rows * rows);
+    for (int z = 0; z < rows; ++z)
+      for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < width_; ++x) values_.push_back(texels.at({low_[0] + x, low_[1] + y, low_[2] + z}));
+  }
+
+  float at(const LatticePoint& p) const {
+    return values_[std::size_t(((p[2] - low_[2]) * rows + p[1] - low_[1]) * width_ + p[0] - low_[0])];
+  }
+
+ private:
+  static constexpr int rows = FieldVariation::cube_cells + 3;
+
+  LatticePoint low_;
+  int width_;
+  std::vector<float> values_;
+};
+
 /// The greater one; infinite where `value` is no number.
 void raise(float& most, float value) {
   most = std::isnan(value) ? std::numeric_limits<float>::infinity() : std::max(most, std::abs(value));
@@ -78,7 +102,7 @@ LatticePoint moved(LatticePoint p, std::size_t axis, int by) {
 }
 
 /// Of one cell, whose low corner is `p`.
-void raise_by_cell(const HeldTexels& texels, const LatticePoint& p, Variation& variation) {
+void raise_by_cell(const RowOfTexels& texels, const LatticePoint& p, Variation& variation) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
     for (const int i : {0, 1})
@@ -114,15 +138,18 @@ FieldVariation::FieldVariation(const BrickStore& store) {
   cubes_.resize(std::size_t(counts_[0]) * std::size_t(counts_[1]) * std::size_t(counts_[2]));
   tbb::parallel_for(0, counts_[2], [&](int z) {
     std::size_t index = std::size_t(z) * std::size_t(counts_[1]) * std::size_t(counts_[0]);
-    for (int y = 0; y < counts_[1]; ++y)
-      for (int x = 0; x < counts_[0]; ++x, ++index) {
-        const LatticePoint low{(first_[0] + x) * cube_cells, (first_[1] + y) * cube_cells,
+    for (int y = 0; y < counts_[1]; ++y) {
+      const LatticePoint begin{first_[0] * cube_cells, (first_[1] + y) * cube_cells,
                                (first_[2] + z) * cube_cells};
+      const RowOfTexels row(texels, begin, counts_[0] * cube_cells);
+      for (int x = 0; x < counts_[0]; ++x, ++index) {
+        const LatticePoint low = moved(begin, 0, x * cube_cells);
         for (int k = 0; k < cube_cells; ++k)
           for (int j = 0; j < cube_cells; ++j)
             for (int i = 0; i < cube_cells; ++i)
-              raise_by_cell(texels, {low[0] + i, low[1] + j, low[2] + k}, cubes_[index]);
+              raise_by_cell(row, {low[0] + i, low[1] + j, low[2] + k}, cubes_[index]);
       }
+    }
   });
 }
 

@@ -59,7 +59,7 @@ RgbaImage image_of(const volume::ImageView& image, const volume::Rect& window, b
 BoundFigures bound_figures(const volume::ImageView& image) {
   std::vector<double> bounds;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4)
-    if (image.rgba[i] > 0) bounds.push_back(double(image.rgba[i]));
+    if (image.rgba[i] > 0) bounds.push_back(std::min(double(image.rgba[i]), 1.0));  // no channel shows more
   if (bounds.empty()) return {};
   return {*std::ranges::max_element(bounds), median(bounds), 0};
 }

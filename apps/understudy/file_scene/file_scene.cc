@@ -163,6 +163,16 @@ volume::RenderRequest unclassified_request(const FileScene& scene, const ImageSe
   return request;
 }
 
+namespace {
+
+std::invalid_argument no_bound() {
+  return std::invalid_argument(
+      "--error-bound is for samples of a transfer function, composed by over: leave out --method, --operator, "
+      "--surface, --no-volume and --light");
+}
+
+}  // namespace
+
 volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& image,
                                  const volume::TexelFigures& values) {
   volume::RenderRequest request = unclassified_request(scene, image);
@@ -178,7 +188,7 @@ volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& im
     request.light->full_slope = float(1e-3 * range / *std::ranges::max_element(scene.file.spacing));
   }
   if (!image.shading.shows_volume) {
-    request.bound_of.reset();
+    if (image.bounds_error) throw no_bound();
     request.classification = volume::TransferFunction{0, 1, {{}, {}}};
     return request;
   }
@@ -195,11 +205,7 @@ volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& im
   request.classification = opacity_corrected(table, image.step, table.entries.size());
   if (image.bounds_error) request.bound_of = {std::move(table), image.step};
   request.steps->cover_whole_ray = may_cover_whole_rays(request);
-  if (request.bound_of && !request.steps->cover_whole_ray)
-    throw std::invalid_argument(
-        "--error-bound is for samples of a transfer function, composed by over: leave out --method, "
-        "--operator, "
-        "--surface and --light");
+  if (image.bounds_error && !request.steps->cover_whole_ray) throw no_bound();
   return request;
 }
 

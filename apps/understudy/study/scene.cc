@@ -52,14 +52,8 @@ TransferFunction resampled(const TransferFunction& table) {
 }
 
 std::array<double, 4> sample_of(const TransferFunction& table, double value) {
-  const double at = std::clamp((value - double(table.low)) / double(table.high - table.low), 0.0, 1.0) *
-                    double(table.entries.size() - 1);
-  const auto below = std::min(std::size_t(at), table.entries.size() - 2);
-  const double share = at - double(below);
-  std::array<double, 4> sample{};
-  for (std::size_t k = 0; k < 4; ++k)
-    sample[k] = (1 - share) * double(table.entries[below][k]) + share * double(table.entries[below + 1][k]);
-  return sample;
+  const double share = std::clamp((value - double(table.low)) / double(table.high - table.low), 0.0, 1.0);
+  return entry_at(table, share * double(table.entries.size() - 1));
 }
 
 /// Of one voxel.

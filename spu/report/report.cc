@@ -146,6 +146,8 @@ struct Totals {
   std::uint64_t images_behind = 0;
   std::uint64_t windows_asked = 0;
   std::size_t volumes = 0;
+  std::uint64_t draws_substituted = 0;  ///< of all volumes, in frames that ended and in those that did not
+  std::uint64_t draws_left = 0;
   volume::FrameCounts counts;
   Amounts amounts{};
   std::array<ReasonCounts, optimization_count> done_because;
@@ -171,6 +173,8 @@ Totals totals_of(Processes processes) {
     for (const VolumeCounters* const entry : volumes_of(*process)) {
       const VolumeCounters& volume = *entry;
       ++totals.volumes;
+      totals.draws_substituted += volume.draws_substituted.load();
+      totals.draws_left += volume.draws_left.load();
       for (const auto& [reason, count] : reasons_of(volume)) totals.reasons[reason] += count;
       if (has_budget(volume.budget))
         totals.budgets.push_back(
@@ -295,7 +299,8 @@ bool lost_server(Processes processes) {
 
 std::optional<bool> has_substituted(Processes processes) {
   if (only_a_stage_elsewhere_knows(processes)) return {};
-  return totals_of(processes).frames_substituted > 0;
+  const Totals totals = totals_of(processes);
+  return totals.frames_substituted > 0 || totals.draws_substituted > 0;
 }
 
 std::string report_json(Processes processes) {
@@ -340,16 +345,21 @@ std::string summary_line(Processes processes) {
                counted(frames_from_a_gl_server(processes), "frame")) +
            loss(processes);
   const Totals totals = totals_of(processes);
+  // ParaView's scripts draw into a widget's framebuffer object and exit before Qt shows it: no frame ends.
+  const std::uint64_t draws = totals.draws_substituted + totals.draws_left;
+  const bool shown = totals.frames > 0 || draws == 0;
+  const std::uint64_t substituted = shown ? totals.frames_substituted : totals.draws_substituted;
   // Who draws is known once somebody did.
   std::string where;
   if (totals.nodes > 0) {
     where = fmt::format(" ({})", counted(static_cast<std::uint64_t>(totals.nodes), "node"));
-  } else if (totals.frames_substituted > 0) {
+  } else if (substituted > 0) {
     where = " (embedded)";
   }
-  std::string line = fmt::format("understudy: {} seen, {}: {} substituted{}, {} not substituted",
-                                 counted(totals.volumes, "volume"), counted(totals.frames, "frame"),
-                                 totals.frames_substituted, where, totals.frames_left);
+  std::string line = fmt::format(
+      "understudy: {} seen, {}: {} substituted{}, {} not substituted", counted(totals.volumes, "volume"),
+      shown ? counted(totals.frames, "frame") : "no frame shown, " + counted(draws, "draw"), substituted, where,
+      shown ? totals.frames_left : totals.draws_left);
   if (!totals.reasons.empty()) line += ": " + listed(totals.reasons);
   line += loss(processes);
   for (const std::string& budget : totals.budgets) line += "\nunderstudy: " + budget;

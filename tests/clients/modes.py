@@ -10,7 +10,8 @@ asked as
 It leaves a first, a middle and a last image (IMAGE.a.png, IMAGE.b.png, IMAGE.png) and prints a line "FRAME ms median X".
 Bare and substituted runs follow each other, in the other order in every second round; a ratio is of two runs beside each
 other. The interval of the ratio is that of Student's t over the logarithms. Everything is as users have it: the speed
-guard is on. Rows in which the viewer draws in the end are of 60 frames, if these take less than half a second.
+guard is on. Rows in which the viewer draws in the end are of five seconds of its frames, and of 60 frames at least, if one
+takes less than half a second.
 
 Rows of the viewer `viewer` are those of ./run viewers, whose script is asked with the name that stands in place of the
 data; of these the last image alone is compared.
@@ -44,8 +45,8 @@ OUT = ROOT / "out" / "modes"
 TILE = 16
 # The bounds of docs/verification.md, in 1/255: on a tile's average, and on what an eighth of its pixels reach.
 MAX_EXCESS, MAX_COMMON = 3.0, 8.0
-# A viewer that draws in the end is looked at for so many frames, if they are short.
-FRAMES_HANDED_BACK, SHORT_FRAME_MS = 60, 500
+# A viewer that draws in the end is looked at for so many frames and for so long, if its frames are short.
+FRAMES_HANDED_BACK, HANDED_BACK_MS, SHORT_FRAME_MS = 60, 5000, 500
 # Slices that are blended into 8 bits: each blend rounds, and a hundred of them drift by some 255ths.
 BOUND_OF_SLICES = 4.0
 SLICES = ("pyqtgraph", "pymol", "osgvolume")
@@ -185,7 +186,9 @@ def frames_of(row, arguments):
     bare = Run(row, "bare", arguments.frames, arguments.seconds)
     run = Run(row, "substituted", arguments.frames, arguments.seconds)
     short = bare.frame_ms is not None and bare.frame_ms <= SHORT_FRAME_MS
-    return FRAMES_HANDED_BACK if short and not run.trouble and run.draws("left") > run.draws("substituted") else arguments.frames
+    if not short or run.trouble or run.draws("left") <= run.draws("substituted"):
+        return arguments.frames
+    return max(FRAMES_HANDED_BACK, round(HANDED_BACK_MS / bare.frame_ms))
 
 
 def row_of(row, arguments):

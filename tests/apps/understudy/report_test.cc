@@ -173,6 +173,22 @@ TEST(Report, NamesNobodyAsTheOneWhoDrewWhereNothingWasSubstituted) {
   EXPECT_THAT(summary_line(Processes(&one, 1)), HasSubstr("1 substituted (embedded)"));
 }
 
+TEST(Report, CountsDrawsWhereNoFrameWasShown) {
+  const auto counters = example();
+  counters->frames = 0;
+  counters->frames_substituted = 0;
+  counters->frames_left = 0;
+  counters->volume[0].draws_substituted = 16;
+  counters->volume[0].draws_left = 1;
+  const ProcessCounters* const one = counters.get();
+  EXPECT_THAT(
+      summary_line(Processes(&one, 1)),
+      HasSubstr("1 volume seen, no frame shown, 17 draws: 16 substituted (4 nodes), 1 not substituted"));
+  EXPECT_EQ(has_substituted(Processes(&one, 1)), true);
+  counters->volume[0].draws_substituted = 0;
+  EXPECT_EQ(has_substituted(Processes(&one, 1)), false);
+}
+
 TEST(Report, KnowsNothingOfFramesThatAStageElsewhereHasDrawnButTheirNumber) {
   const auto counters = std::make_unique<ProcessCounters>();
   counters->remote.is = 1;

@@ -20,6 +20,9 @@ With --watch each row runs once under Understudy, with the speed guard off, and 
 were compared and lost, and what recognition and sentinels took of a bare frame, on average over all frames but the
 first; and how long Understudy waited for what the viewer itself had drawn before, as the viewer would have done.
 
+VTK chooses how fine an image is by the clock while somebody turns a volume (`inter`): two runs show other images in the
+middle. There every frame of one more run is compared with what the viewer draws in that same frame (--verify 1).
+
 An image is held against the bare viewer's of the same round in tiles of 16 × 16 pixels, as docs/verification.md says:
 the worst tile's difference as a multiple of the bound.
 
@@ -50,6 +53,8 @@ FRAMES_HANDED_BACK, HANDED_BACK_MS, SHORT_FRAME_MS = 60, 5000, 500
 # Slices that are blended into 8 bits: each blend rounds, and a hundred of them drift by some 255ths.
 BOUND_OF_SLICES = 4.0
 SLICES = ("pyqtgraph", "pymol", "osgvolume")
+# In these modes the viewer chooses by the clock what it shows in the middle.
+BY_THE_CLOCK = ("inter",)
 # Two-sided 95 % quantiles of Student's t by degrees of freedom; with more than ten, as with ten.
 T_95 = (None, 12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26, 2.23)
 
@@ -191,6 +196,16 @@ def frames_of(row, arguments):
     return max(FRAMES_HANDED_BACK, round(HANDED_BACK_MS / bare.frame_ms))
 
 
+def worst_tile_of_own_frames(row, frames, arguments):
+    """Of all frames of a run, each against the viewer's own drawing in it; infinite where one was not compared."""
+    run = Run(row, "verified", frames, arguments.seconds, "--verify 1 --speed-guard off")
+    if run.trouble or not run.report:
+        return None
+    verified = [volume["verify"] for volume in run.report["volumes"] if volume["draws"]["substituted"] > 0]
+    compared = sum(verify["frames"] for verify in verified)
+    return max((verify["worst_tile"] for verify in verified), default=None) if compared >= frames else math.inf
+
+
 def row_of(row, arguments):
     frames = frames_of(row, arguments)
     runs = {"bare": [], "substituted": []}
@@ -210,6 +225,8 @@ def row_of(row, arguments):
             tile = worst_tile(a, b)
             if tile is not None:
                 tiles[place] = max(tile, tiles[place] or 0.0)
+    if any(mode in BY_THE_CLOCK for mode in row[2].split(",")):
+        tiles[1] = worst_tile_of_own_frames(row, frames, arguments)
     last = runs["substituted"][-1]
     ratio, low, high = interval(ratios)
     return {"row": row, "ratio": ratio, "low": low, "high": high, "rounds": len(ratios), "tiles": tiles,

@@ -8,6 +8,7 @@
 #include "spu/volume/context/context.h"
 #include "spu/volume/proxy/cuts.h"
 #include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/texture/texture_parameter.h"
 
 namespace understudy::spu {
 namespace {
@@ -55,6 +56,19 @@ void append_value(const MarchContext& measured, const StageUniform& uniform, std
   std::array<GLfloat, 16> value{};
   gl.GetUniformfv(program, location, value.data());
   values.insert(values.end(), value.begin(), value.begin() + std::ptrdiff_t(components_of_type(uniform.type)));
+}
+
+/// How a texture of 1 or 2 dimensions is looked up between texels and beyond its ends.
+void append_lookup(const GlContext& context, const SampledTexture& texture, std::vector<float>& values) {
+  const DispatchTable& gl = *context.gl;
+  if (texture.target != GL_TEXTURE_1D && texture.target != GL_TEXTURE_2D) return;
+  GLint active = 0;
+  gl.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
+  gl.ActiveTexture(GLenum(GL_TEXTURE0 + texture.unit));
+  const GLint sampler = bound_sampler(context);
+  for (const GLenum name : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER, GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    values.push_back(float(texture_parameter(gl, texture.target, sampler, name)));
+  gl.ActiveTexture(GLenum(active));
 }
 
 /// Whether the uniform reaches where samples lie and when a ray ends, and decides about no fragment or colour.
@@ -133,6 +147,7 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
     if (of_samples) inputs.tables.insert(inputs.tables.end(), {inputs.fixed.size(), inputs.fixed.size() + 1});
     inputs.fixed.push_back(float(other.texture));
     inputs.fixed.push_back(float(group.texture_version(other.texture)));
+    append_lookup(measured.context, other, inputs.fixed);
   }
   return inputs;
 }

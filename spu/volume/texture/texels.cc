@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "spu/volume/context/context.h"
+#include "spu/volume/texture/texture_parameter.h"
 
 namespace understudy::spu {
 namespace {
@@ -14,16 +15,6 @@ namespace {
 GLint level_parameter(const DispatchTable& gl, GLenum target, GLenum name) {
   GLint value = 0;
   gl.GetTexLevelParameteriv(target, 0, name, &value);
-  return value;
-}
-
-GLint texture_parameter(const DispatchTable& gl, GLenum target, GLint sampler, GLenum name) {
-  GLint value = 0;
-  if (sampler != 0) {
-    gl.GetSamplerParameteriv(GLuint(sampler), name, &value);
-  } else {
-    gl.GetTexParameteriv(target, name, &value);
-  }
   return value;
 }
 
@@ -291,7 +282,7 @@ std::optional<std::string> describe_texture(const GlContext& context, GLenum tar
     GLint active = 0;
     gl.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
     gl.ActiveTexture(GLenum(GL_TEXTURE0 + unit));
-    gl.GetIntegerv(GL_SAMPLER_BINDING, &sampler);
+    sampler = bound_sampler(context);
     gl.ActiveTexture(GLenum(active));
     gl.GetTexParameteriv(target, GL_TEXTURE_SWIZZLE_RGBA, description.swizzle.data());
   }

@@ -118,11 +118,24 @@ std::optional<TranslucentRay> translucent_ray(const MarchContext& measured, Fiel
   return std::nullopt;
 }
 
+namespace {
+
+/// Where nearly nothing is let through any more, one sample makes no difference, or programs have stopped. Some
+/// stop at 0.95 or 0.98: if enough rays let more through, the others do not count.
+double most_counted_opacity(const std::vector<double>& opacities) {
+  constexpr double nearly_opaque = 0.99;
+  constexpr double surely_before_the_stop = 0.9;
+  const auto below = [&](double most) {
+    return std::ranges::count_if(opacities, [=](double opacity) { return opacity <= most; });
+  };
+  return 4 * below(surely_before_the_stop) >= below(nearly_opaque) ? surely_before_the_stop : nearly_opaque;
+}
+
+}  // namespace
+
 std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchContext& measured, FieldProbe& probe,
                                                                 const RaysThroughBox& rays,
                                                                 const March& march) {
-  // Where nearly nothing is let through any more, programs stop, or one sample makes no difference.
-  constexpr float most_counted = 0.99F;
   const bool already = premultiplied_already(measured, march);
   std::vector<CountedRay> counted;
   std::vector<double> amounts;
@@ -135,12 +148,24 @@ std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchConte
       const int column = int(i) % probe.width();
       const int row = y + int(i) / probe.width();
       const auto way = rays.way(probe.x_of(column), probe.y_of(row));
-      const float seen = amount(march, premultiplied(fragments[i], already));
-      if (!way || (!march.sum && seen > most_counted)) continue;
+      if (!way) continue;
       counted.push_back({*way, 0, probe.left() + column, probe.bottom() + row});
       colours.push_back(premultiplied(fragments[i], already));
       amounts.push_back(double(amount(march, colours.back())));
     }
+  }
+  if (!march.sum) {
+    const double most_counted = most_counted_opacity(amounts);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < counted.size(); ++i) {
+      if (amounts[i] > most_counted) continue;
+      counted[kept] = counted[i];
+      colours[kept] = colours[i];
+      amounts[kept++] = amounts[i];
+    }
+    counted.resize(kept);
+    colours.resize(kept);
+    amounts.resize(kept);
   }
   if (counted.size() < 64) return "too little of the box is in view to measure its rays";
   const auto most = std::max_element(amounts.begin(), amounts.end());

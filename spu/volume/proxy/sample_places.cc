@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "spu/volume/classification/table_lookup.h"
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/step_fit.h"
 #include "volume/matrix.h"
@@ -21,7 +22,7 @@ namespace {
 struct Additive {
   bool sum = false;
   std::size_t channel = 3;
-  float most_told = 0.99F;  ///< beyond, programs stop
+  float most_told = 0.99F;  ///< beyond, programs have stopped
 
   std::optional<double> of(const Rgba& ray) const {
     if (!reached(ray) || !(ray[channel] >= 0 && ray[channel] <= most_told)) return std::nullopt;
@@ -46,14 +47,14 @@ bool told_apart(const ShaderBackground& background, const Rgba& a, const Rgba& b
 }
 
 std::optional<Contrast> contrast_to(const Rgba& translucent, const March& march,
-                                    const std::vector<SeenValue>& values) {
+                                    const std::vector<SeenValue>& values, float most_told) {
   constexpr double least_told = 0.25;  // of what the translucent one adds
   constexpr float below_limit = 1e-4F;
   std::optional<Contrast> best;
   double most = 0;
   for (std::size_t channel = march.sum ? 0 : 3; channel < (march.sum ? 3U : 4U); ++channel) {
     Additive amount{march.sum.has_value(), channel};
-    if (!march.sum) amount.most_told = std::min(amount.most_told, march.opacity_limit - below_limit);
+    if (!march.sum) amount.most_told = std::min(most_told, march.opacity_limit - below_limit);
     const auto own = amount.of(translucent);
     if (!own) continue;
     for (const SeenValue& seen : values) {
@@ -67,6 +68,21 @@ std::optional<Contrast> contrast_to(const Rgba& translucent, const March& march,
     }
   }
   return best;
+}
+
+/// The same on rays so short that the translucent value lets half of the light through: of long ones all may be
+/// nearly opaque.
+std::optional<Contrast> contrast_on_short_rays(const March& march, const std::vector<SeenValue>& values,
+                                               float most_told) {
+  const auto sample_of = [&](float value) { return table_at(march.table, value); };
+  const double opacity = double(sample_of(march.translucent)[3]);
+  if (!(opacity > 0 && opacity < 0.5)) return std::nullopt;
+  const double samples = std::log(0.5) / std::log1p(-opacity);
+  std::vector<SeenValue> shorter;
+  shorter.reserve(values.size());
+  for (const SeenValue& seen : values)
+    shorter.push_back({seen.value, ray_of(march, sample_of(seen.value), samples)});
+  return contrast_to(ray_of(march, sample_of(march.translucent), samples), march, shorter, most_told);
 }
 
 /// Steps from the ray's beginning to the plane, less those to its first sample; none where it does not cross.
@@ -234,7 +250,13 @@ std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& prob
   const auto way = rays.way(middle[0], middle[1]);
   const auto translucent = std::ranges::find(values, march.translucent, &SeenValue::value);
   if (!way || translucent == values.end()) return {};
-  const auto contrast = contrast_to(translucent->ray, march, values);
+  // Limits of opacity of 0.97 and more are not looked for.
+  constexpr float below_limits = 0.96F;
+  constexpr float below_nearly_opaque = 0.99F;
+  auto contrast = contrast_to(translucent->ray, march, values, below_limits);
+  if (!contrast && !march.sum && !march.background)
+    contrast = contrast_on_short_rays(march, values, below_limits);
+  if (!contrast) contrast = contrast_to(translucent->ray, march, values, below_nearly_opaque);
   if (!contrast) return {};
   auto fields = split_fields(box.region, *way, contrast->value, march.translucent);
   if (fields.empty()) return {};

@@ -20,6 +20,9 @@
 // Shading of another kind, with light that shines from the eye, is a function of the cosine between normal and
 // ray (shortened likewise) alone: `response` holds it, point by point, in place of |n . l| and |n .
 // h|^shininess.
+//
+// Gradient opacity (Levoy 1988) is of a point's slope alone: colour and opacity are multiplied by a number that
+// `gradient_opacity` has for |gradient|, 0 where there is no gradient.
 #pragma once
 
 #include <algorithm>
@@ -60,6 +63,26 @@ struct NormalGuard {
   bool operator==(const NormalGuard&) const = default;
 };
 
+constexpr std::size_t max_gradient_opacities = 16384;
+
+/// What points are multiplied by: `factors` stand for evenly spaced slopes, from `first` to `last`, are
+/// interpolated linearly in between and hold beyond.
+struct GradientOpacity {
+  std::vector<float> factors;  ///< at least two, from 0 to 1; empty: none
+  /// In values, normalised as those of a TransferFunction, per unit of length of a light's `space`.
+  double first = 0;
+  double last = 1;
+
+  double at(double slope) const {
+    const double end = double(factors.size() - 1);
+    const double place = std::clamp((slope - first) / (last - first) * end, 0.0, end);
+    const std::size_t entry = std::min(std::size_t(place), factors.size() - 2);
+    const double share = place - double(entry);
+    return double(factors[entry]) + share * (double(factors[entry + 1]) - double(factors[entry]));
+  }
+  bool operator==(const GradientOpacity&) const = default;
+};
+
 /// The default is understudy render's --material.
 struct Light {
   /// Row-major; texture space to the space in which directions are meant and angles are measured.
@@ -88,6 +111,7 @@ struct Light {
   /// If not empty: at cosines from -1 to 1, evenly spaced; interpolated linearly in between. `direction` is
   /// zero, `shininess` and `two_sided` are not looked at.
   std::vector<LightResponse> response;
+  GradientOpacity gradient_opacity;  ///< of samples alone: without surfaces and segments
 
   bool operator==(const Light&) const = default;
 };

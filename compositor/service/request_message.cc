@@ -231,6 +231,10 @@ void write(Writer& out, const std::optional<Light>& light) {
     out.real(entry.diffuse);
     out.real(entry.specular);
   }
+  out.integer(std::int64_t(light->gradient_opacity.factors.size()));
+  for (const float factor : light->gradient_opacity.factors) out.real(factor);
+  out.real(light->gradient_opacity.first);
+  out.real(light->gradient_opacity.last);
 }
 
 std::optional<Light> read_light(Reader& in) {
@@ -256,6 +260,12 @@ std::optional<Light> read_light(Reader& in) {
     entry.diffuse = in.real32("light.response.diffuse");
     entry.specular = in.real32("light.response.specular");
   }
+  GradientOpacity& opacity = light.gradient_opacity;
+  opacity.factors.resize(
+      std::size_t(in.integer("light.gradient_opacity", 0, std::int64_t(max_gradient_opacities))));
+  for (float& factor : opacity.factors) factor = in.real32("light.gradient_opacity.factors");
+  opacity.first = in.real("light.gradient_opacity.first");
+  opacity.last = in.real("light.gradient_opacity.last");
   return light;
 }
 

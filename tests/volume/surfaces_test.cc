@@ -407,6 +407,42 @@ TEST(Light, OfAnyResponseAndReachIsWhatDoublePrecisionSays) {
   }
 }
 
+TEST(Light, GradientOpacityIsWhatDoublePrecisionSays) {
+  struct Case {
+    const char* name;
+    TexelType type;
+    Filter filter;
+    Light light;
+  };
+  Light alone = some_light();
+  alone.ambient = {1, 1, 1};
+  alone.diffuse = alone.specular = {0, 0, 0};
+  for (const Case& c : {Case{"with Phong's light", TexelType::u8, Filter::linear, some_light()},
+                        Case{"with a response", TexelType::u8, Filter::linear_8_bit, some_response()},
+                        Case{"alone", TexelType::u16, Filter::linear, alone},
+                        Case{"alone, of floats", TexelType::f32, Filter::linear, alone}}) {
+    Texture texture = sampled(describe({40, 37, 43}, c.type), marschner_lobb_field());
+    RenderRequest request = request_for(texture, usual_camera(40, 34), 40, 34, 60);
+    request.filter = c.filter;
+    request.light = c.light;
+    // Nothing in even parts, all of it in the middle, little on the steepest slopes.
+    request.light->gradient_opacity = {{0, 0.3F, 1, 0.5F, 0.1F}, 0.2, 3};
+    give_ghost_layer(texture, request);
+    FrameCounts counts;
+    const Image image = drawn(texture, request, counts);
+    const Field field = texture_field(texture.description, c.filter, texture.texels);
+    const auto shade = [&](const Vec3& t, const Vec3& way, const std::array<double, 4>& colour) {
+      return illuminated(field, texture.description, *request.light, t, way, colour);
+    };
+    const Difference d = difference(image, slice_sum(field, request, request.window, shade), 1e-3);
+    std::printf("%s: max %.2e, rms %.2e\n", c.name, d.max, d.rms);
+    EXPECT_LE(d.pixels_over, pixels_that_graze);
+    EXPECT_LE(d.rms, 1e-4);
+    request.light->gradient_opacity.factors.clear();
+    EXPECT_GT(difference(image, drawn(texture, request, counts)).rms, 1e-2) << "slopes change nothing";
+  }
+}
+
 TEST(Light, ThatIsEverywhereTheSameChangesNothing) {
   Texture texture = noise(describe({40, 37, 43}, TexelType::u8), 4);
   RenderRequest request = request_on_steps(texture);
@@ -449,6 +485,16 @@ TEST(Surfaces, AndLightWithoutSenseAreRefused) {
     r.light->response = {{1, 0}};
   });
   refused("response to light from elsewhere", [](RenderRequest& r) { r.light->response = {{1, 0}, {1, 0}}; });
+  refused("gradient opacity of surfaces", [](RenderRequest& r) { r.light->gradient_opacity = {{1, 1}}; });
+  const auto refused_opacity = [&](const char* why, const GradientOpacity& opacity) {
+    refused(why, [&](RenderRequest& r) {
+      r.surfaces.clear();
+      r.light->gradient_opacity = opacity;
+    });
+  };
+  refused_opacity("gradient opacity of one factor", {{1}});
+  refused_opacity("factors above 1", {{0, 1.5F}});
+  refused_opacity("slopes the wrong way round", {{0, 1}, 1, 0});
   --texture.description.ghost_layer;
   EXPECT_THROW(validate(texture.description, good), std::invalid_argument) << "margin";
   Texture colours = noise(describe({9, 9, 9}, TexelType::rgba8), 1);

@@ -188,11 +188,18 @@ class SegmentWalk {
     }
     Rgba even = colour;
     for (std::size_t k = 0; k < 3; ++k) even[k] *= prepared_light.model.even[k];
-    if (!(square > 0)) {
+    const double slope = square > 0 ? std::sqrt(square) : 0;
+    // Of an even field's colour here, of a lit one below.
+    const auto fade = [&] {
+      if (prepared_light.gradient_opacity.factors.empty()) return;
+      const auto factor = float(prepared_light.gradient_opacity.at(slope));
+      for (float& channel : colour) channel *= factor;
+    };
+    if (slope == 0) {
       colour = even;
+      fade();
       return;
     }
-    const double slope = std::sqrt(square);
     const double length = prepared_light.guard.length_of_normal(slope);
     const auto cosine = [&](double projection) {
       const double c = projection / slope * length;
@@ -216,6 +223,7 @@ class SegmentWalk {
         lit = std::min(lit, double(prepared_light.model.brightest) * double(colour[3]));
       colour[k] = float(double(even[k]) + share * (lit - double(even[k])));
     }
+    fade();
   }
 
   const Scene& scene_;

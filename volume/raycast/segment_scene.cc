@@ -37,6 +37,17 @@ void validate_response(const Light& light) {
            "the light's response holds a value that is not finite");
 }
 
+void validate_gradient_opacity(const GradientOpacity& opacity) {
+  const std::vector<float>& factors = opacity.factors;
+  if (factors.empty()) return;
+  demand(factors.size() >= 2 && factors.size() <= max_gradient_opacities,
+         "a gradient opacity has at least 2 and at most 16384 factors");
+  demand(std::ranges::all_of(factors, [](float factor) { return factor >= 0 && factor <= 1; }),
+         "a gradient opacity holds a factor outside of [0, 1]");
+  demand(std::isfinite(opacity.first) && std::isfinite(opacity.last) && opacity.first < opacity.last,
+         "a gradient opacity's slopes must be finite, and the last larger than the first");
+}
+
 bool not_negative(const std::array<float, 3>& colour) {
   return std::all_of(colour.begin(), colour.end(), [](float v) { return std::isfinite(v) && v >= 0; });
 }
@@ -179,6 +190,9 @@ void validate_segments(const VolumeDescription& volume, const RenderRequest& req
     demand(not_negative(light->even), "what points without a gradient keep must be finite and not negative");
     demand(light->brightest > 0, "lit points show less than nothing");
     validate_response(*light);
+    validate_gradient_opacity(light->gradient_opacity);
+    demand(light->gradient_opacity.factors.empty() || lit_samples,
+           "gradient opacity is for samples, without surfaces and pre-integration");
   }
   if (const int cells = ghost_layer_needed(volume, request); cells > volume.ghost_layer)
     throw std::invalid_argument(fmt::format(
@@ -191,6 +205,9 @@ PreparedLight::PreparedLight(const Light& light, const VolumeDescription& volume
     : model(light),
       full_slope(float(light.full_slope * largest_texel(volume.type))),
       guard{light.guard.slope * largest_texel(volume.type), light.guard.form},
+      gradient_opacity{light.gradient_opacity.factors,
+                       light.gradient_opacity.first * largest_texel(volume.type),
+                       light.gradient_opacity.last * largest_texel(volume.type)},
       inverse_(inverse_of(light.space)) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     size_[axis] = volume.size[axis];

@@ -54,6 +54,7 @@ struct PreparedLight {
   std::array<float, 9> metric{};
   float full_slope = 0;                 ///< the model's, in units of the texel type
   NormalGuard guard{};                  ///< likewise
+  GradientOpacity gradient_opacity{};   ///< likewise
   std::array<float, 3> reach{1, 1, 1};  ///< the model's
 
  private:

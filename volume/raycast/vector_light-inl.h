@@ -158,8 +158,21 @@ constexpr float least_square = 1e-30F;
 /// half the way to the eye, raised to the shininess.
 struct Brightness {
   Floats diffuse, gleam;
-  Floats lit;  // the light's share: 1, less where it fades, and 0 where there is no slope
+  Floats lit;      // the light's share: 1, less where it fades, and 0 where there is no slope
+  Floats opacity;  // by the slope; if there is gradient opacity
 };
+
+/// By slopes in the units of `metric`.
+HWY_INLINE Floats gradient_opacity_of(Floats slope, const SegmentConstants& constants) {
+  const FloatTag f;
+  const IntTag d;
+  const Floats unbound = hn::MulAdd(slope, constants.gradient_factors_a_slope, constants.first_gradient_factor);
+  const Floats place = hn::Min(hn::Max(unbound, hn::Zero(f)), constants.end_of_gradient_factors);
+  const Ints entry = hn::Min(truncated(place), constants.last_gradient_factor);
+  const Floats share = hn::Sub(place, hn::ConvertTo(f, entry));
+  return mix(hn::GatherIndex(f, constants.gradient_factors, entry),
+             hn::GatherIndex(f, constants.gradient_factors, hn::Add(entry, hn::Set(d, 1))), share);
+}
 
 /// The light's response to cosines between -1 and 1.
 HWY_INLINE void find_response(Floats cosine, const SegmentConstants& constants, Brightness& out) {
@@ -202,6 +215,9 @@ HWY_INLINE void find_cosines(const SegmentPacket& rays, const Slope& slope, cons
   const Floats estimate = hn::ApproximateReciprocalSqrt(safe);
   const Floats rest = hn::NegMulAdd(hn::Mul(safe, estimate), estimate, one);
   const Floats unit = hn::MulAdd(hn::Mul(hn::Set(f, 0.5F), estimate), rest, estimate);
+  if (constants.gradient_factors != nullptr)
+    out.opacity =
+        gradient_opacity_of(hn::IfThenElseZero(slopes, hn::Mul(size, hn::Mul(safe, unit))), constants);
   Floats inverse = unit;
   if (constants.is_guarded) {
     const Floats guard = hn::Div(constants.guard_in_slopes, size);
@@ -276,6 +292,11 @@ HWY_INLINE void light_up(const Brightness& at, const SegmentConstants& constants
   put(hn::Broadcast<1>(at.lit), second, colours[1]);
   put(hn::Broadcast<2>(at.lit), third, colours[2]);
   put(hn::Broadcast<3>(at.lit), fourth, colours[3]);
+  if (constants.gradient_factors == nullptr) return;
+  colours[0] = hn::Mul(colours[0], hn::Broadcast<0>(at.opacity));
+  colours[1] = hn::Mul(colours[1], hn::Broadcast<1>(at.opacity));
+  colours[2] = hn::Mul(colours[2], hn::Broadcast<2>(at.opacity));
+  colours[3] = hn::Mul(colours[3], hn::Broadcast<3>(at.opacity));
 }
 
 /// Light on the points p of the rays of `wanted`, which have such colours.

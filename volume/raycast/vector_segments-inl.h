@@ -50,6 +50,17 @@ struct SegmentConstants : Constants {
       guard_in_slopes =
           hn::Set(f, float(std::min(2 * double(std::abs(Source::factor)) * double(unit) * guard.slope,
                                     double(std::numeric_limits<float>::max()))));
+    const GradientOpacity& opacity = prepared_light->gradient_opacity;
+    if (!opacity.factors.empty()) {
+      gradient_factors = opacity.factors.data();
+      last_gradient_factor = hn::Set(IntTag(), std::int32_t(opacity.factors.size() - 2));
+      end_of_gradient_factors = hn::Set(f, float(opacity.factors.size() - 1));
+      const double factors_a_slope = double(opacity.factors.size() - 1) / (opacity.last - opacity.first);
+      // A table that is all but a step lies where a float says.
+      gradient_factors_a_slope = hn::Set(
+          f, float(std::min(factors_a_slope / (2 * double(std::abs(Source::factor)) * double(unit)), 1e30)));
+      first_gradient_factor = hn::Set(f, float(std::clamp(-opacity.first * factors_a_slope, -1e30, 1e30)));
+    }
     two_sided = prepared_light->model.two_sided;
     const auto colour = [&](const std::array<float, 3>& rgb, float alpha) HWY_ATTR {
       alignas(16) const float components[4] = {rgb[0], rgb[1], rgb[2], alpha};
@@ -112,9 +123,13 @@ struct SegmentConstants : Constants {
   Ints last_response;       // the last but one entry
   bool is_guarded = false;  // normals are shorter than 1
   NormalGuard::Form guard_form{};
-  Floats guard_in_slopes;  // in the units of `metric`
-  bool fades = false;      // where slopes are less than the light's full slope
-  Floats share_of_slope;   // what a slope in the units of `metric` is multiplied with
+  Floats guard_in_slopes;                   // in the units of `metric`
+  bool fades = false;                       // where slopes are less than the light's full slope
+  Floats share_of_slope;                    // what a slope in the units of `metric` is multiplied with
+  const float* gradient_factors = nullptr;  // null: opacity does not depend on slopes
+  Ints last_gradient_factor;                // the last but one
+  Floats gradient_factors_a_slope;          // in the units of `metric`
+  Floats first_gradient_factor, end_of_gradient_factors;
 
   std::array<Floats, 3> inner_low, inner_high;  // one cell away from the ends of what is held
   bool has_inner = true;                        // and gradients reach the next cell

@@ -48,7 +48,12 @@ std::array<double, 4> illuminated(const Field& field, const VolumeDescription& v
   const double slope = length(normal);
   std::array<double, 4> even = colour;
   for (std::size_t k = 0; k < 3; ++k) even[k] *= double(light.even[k]);
-  if (!(slope > 0)) return even;
+  const auto faded = [&](std::array<double, 4> shown) {
+    if (light.gradient_opacity.factors.empty()) return shown;
+    for (double& channel : shown) channel *= light.gradient_opacity.at(slope);
+    return shown;
+  };
+  if (!(slope > 0)) return faded(even);
   normal = scale(normal, 1 / slope);
   const Vec4 forward = transform(linear(light.ray_space.value_or(light.space)), {way[0], way[1], way[2], 0});
   const Vec3 eye = unit({-forward[0], -forward[1], -forward[2]});
@@ -78,7 +83,7 @@ std::array<double, 4> illuminated(const Field& field, const VolumeDescription& v
   // As long as `slope` is less than light.full_slope.
   const double share = slope < double(light.full_slope) ? slope / double(light.full_slope) : 1;
   for (std::size_t k = 0; k < 3; ++k) lit[k] = even[k] + share * (lit[k] - even[k]);
-  return lit;
+  return faded(lit);
 }
 
 }  // namespace understudy::volume

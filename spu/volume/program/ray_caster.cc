@@ -49,6 +49,14 @@ void sort_fetches(const StageFacts& facts, const std::vector<std::size_t>& fetch
   }
 }
 
+/// Whether all fragments run through a loop equally often, whatever they have gathered: one over the axes.
+bool runs_equally_often(const StageFacts& facts, std::size_t loop) {
+  return std::ranges::all_of(facts.loops[loop].condition, [&](const Dependence& on) {
+    const Source& source = facts.sources[on.source];
+    return is_fixed_for_rays(source.kind) || (source.kind == SourceKind::iteration && source.number == loop);
+  });
+}
+
 /// Whether all that reaches the fetch's coordinate is texels of the volume, by way of other tables perhaps, and
 /// what is the same for the whole draw.
 bool is_addressed_by_samples(const StageFacts& facts, const Fetch& fetch, std::span<const std::string> volumes,
@@ -57,6 +65,9 @@ bool is_addressed_by_samples(const StageFacts& facts, const Fetch& fetch, std::s
   if (tables_deep > most_tables_deep) return false;
   const auto allowed = [&](const Dependence& on) {
     const Source& source = facts.sources[on.source];
+    // A gradient may be taken axis by axis.
+    if (source.kind == SourceKind::iteration)
+      return facts.loops[source.number].outer && runs_equally_often(facts, source.number);
     if (source.kind != SourceKind::texel) return is_fixed_for_rays(source.kind);
     return std::ranges::find(volumes, source.name) != volumes.end() ||
            is_addressed_by_samples(facts, facts.fetches[source.number], volumes, tables_deep + 1);
@@ -94,18 +105,31 @@ void add_places(const StageFacts& facts, const Fetch& fetch, std::span<const std
   for (const Dependences& component : fetch.coordinate) std::ranges::for_each(component, add);
 }
 
-/// Of `tables`, which are looked up by samples.
-std::vector<std::string> tables_of_one_texel(const StageFacts& facts, const std::vector<std::string>& tables,
-                                             std::span<const std::string> volumes) {
-  std::vector<std::string> found;
-  std::ranges::copy_if(tables, std::back_inserter(found), [&](const std::string& table) {
-    std::set<std::uint32_t> places;
-    for (const Fetch& fetch : facts.fetches) {
-      if (fetch.sampler == table) add_places(facts, fetch, volumes, places);
-    }
-    return places.size() == 1;
-  });
-  return found;
+/// Of the texels that reach what is looked up in `table`.
+std::set<std::uint32_t> places_that_address(const StageFacts& facts, const std::string& table,
+                                            std::span<const std::string> volumes) {
+  std::set<std::uint32_t> places;
+  for (const Fetch& fetch : facts.fetches) {
+    if (fetch.sampler == table) add_places(facts, fetch, volumes, places);
+  }
+  return places;
+}
+
+/// Of `finding.tables_of_samples`, by the texels that reach them.
+void sort_tables(const StageFacts& facts, std::span<const std::string> volumes, RayFinding& finding) {
+  std::set<std::uint32_t> samples;
+  for (const std::string& table : finding.tables_of_samples) {
+    const std::set<std::uint32_t> places = places_that_address(facts, table, volumes);
+    if (places.size() != 1) continue;
+    finding.tables_of_one_texel.push_back(table);
+    samples.insert(places.begin(), places.end());
+  }
+  for (const std::string& table : finding.tables_of_samples) {
+    const std::set<std::uint32_t> places = places_that_address(facts, table, volumes);
+    const auto of_sample = [&](std::uint32_t place) { return samples.contains(place); };
+    if (places.size() > 1 && std::ranges::none_of(places, of_sample))
+      finding.tables_of_gradients.push_back(table);
+  }
 }
 
 void add_once(std::vector<std::string>& reasons, std::string reason) {
@@ -141,14 +165,6 @@ std::optional<std::size_t> common_loop(const StageFacts& facts, std::span<const 
     if (loop && is_around_all(*loop)) return loop;
   }
   return std::nullopt;
-}
-
-/// Whether all fragments run through a loop equally often, whatever they have gathered: one over the axes.
-bool runs_equally_often(const StageFacts& facts, std::size_t loop) {
-  return std::ranges::all_of(facts.loops[loop].condition, [&](const Dependence& on) {
-    const Source& source = facts.sources[on.source];
-    return is_fixed_for_rays(source.kind) || (source.kind == SourceKind::iteration && source.number == loop);
-  });
 }
 
 /// What of a fetch's coordinate is neither the same for the whole draw nor counted by a loop within `around`,
@@ -218,9 +234,11 @@ std::optional<NeighbourDistance> neighbour_distance(const StageFacts& fragment,
   return std::nullopt;
 }
 
-bool address_tables_alone(const StageFacts& fragment, std::span<const std::size_t> fetches) {
+bool address_tables_alone(const StageFacts& fragment, std::span<const std::size_t> fetches,
+                          std::span<const std::string> others) {
   std::map<std::string, std::set<std::uint32_t>> places_by_table;
   for (const Fetch& table : fragment.fetches) {
+    if (std::ranges::find(others, table.sampler) != others.end()) continue;
     for (const Dependences& component : table.coordinate) {
       for (const Dependence& on : component) {
         const Source& source = fragment.sources[on.source];
@@ -250,7 +268,7 @@ RayFinding ray_finding(const StageFacts& fragment, std::span<const std::string> 
   finding.side_effects = !fragment.side_effects.empty();
   finding.tables.assign(tables.begin(), tables.end());
   finding.tables_of_samples = tables_of_samples(fragment, tables, volumes);
-  finding.tables_of_one_texel = tables_of_one_texel(fragment, finding.tables_of_samples, volumes);
+  sort_tables(fragment, volumes, finding);
   finding.reasons = reasons_of(fragment, finding);
   return finding;
 }

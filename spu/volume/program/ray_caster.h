@@ -29,7 +29,9 @@ struct RayFinding {
   std::vector<std::string>
       tables_of_samples;  ///< of these, the ones that are addressed by texels of the volume alone
   std::vector<std::string>
-      tables_of_one_texel;         ///< of these, the ones that no second texel reaches: no gradient
+      tables_of_one_texel;  ///< of these, the ones that no second texel reaches: no gradient
+  std::vector<std::string>
+      tables_of_gradients;  ///< of these, the ones that neighbours of a sample reach, and the sample does not
   bool discards_by_place = false;  ///< fragments, by gl_FragCoord.x or .y
   bool writes_depth = false;
   bool side_effects = false;
@@ -58,8 +60,10 @@ enum class NeighbourDistance : std::uint8_t {
 std::optional<NeighbourDistance> neighbour_distance(const StageFacts& fragment,
                                                     std::span<const std::size_t> fetches);
 
-/// Whether every table that more than one of these fetches could address is addressed by one of them alone.
-bool address_tables_alone(const StageFacts& fragment, std::span<const std::size_t> fetches);
+/// Whether every table that more than one of these fetches could address, but for `others`, is addressed by one
+/// of them alone.
+bool address_tables_alone(const StageFacts& fragment, std::span<const std::size_t> fetches,
+                          std::span<const std::string> others = {});
 
 /// `volumes` names the samplers that are set to the volume's texture.
 RayFinding ray_finding(const StageFacts& fragment, std::span<const std::string> volumes);

@@ -210,7 +210,8 @@ std::optional<Refusal> refusal_of_ray_caster(const ProgramFindings& findings) {
 std::optional<program::NeighbourDistance> neighbours_of_gradients(const ProgramFindings& findings) {
   const StageFacts& facts = findings.facts;
   const std::vector<std::size_t> fetches = fetches_of_samples(*findings.ray, facts, findings.roles);
-  if (fetches.size() < 2 || !address_tables_alone(facts, fetches)) return std::nullopt;
+  if (fetches.size() < 2 || !address_tables_alone(facts, fetches, findings.ray->tables_of_gradients))
+    return std::nullopt;
   return neighbour_distance(facts, fetches);
 }
 

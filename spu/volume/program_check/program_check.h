@@ -79,8 +79,8 @@ std::optional<Refusal> refusal_of_slices(const ProgramStages& stages, const Prog
 std::optional<Refusal> refusal_of_ray_caster(const ProgramFindings& findings);
 
 /// How far away the neighbours are where a ray caster's samples are made of a texel and its neighbours at
-/// constant distances, and tables are addressed by one of them: central differences, which light needs. Null:
-/// they are not.
+/// constant distances, and tables are addressed by one of them, or by the neighbours alone: central
+/// differences, which light and gradient opacity need. Null: they are not.
 std::optional<program::NeighbourDistance> neighbours_of_gradients(const ProgramFindings& findings);
 
 /// Uniforms of slices as inputs of a comparison: what a change of those does that decide about fragments or

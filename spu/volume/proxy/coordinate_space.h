@@ -52,6 +52,7 @@ struct MarchContext {
   std::optional<program::NeighbourDistance> neighbours{};
   /// As of program::RayFinding: names of samplers.
   std::span<const std::string> tables_of_one_texel{};
+  std::span<const std::string> tables_of_gradients{};
   const Capture* seen = nullptr;  ///< of this run; where it tells what is asked, the run is not drawn once more
 };
 

@@ -39,27 +39,38 @@ bool may_be_sampled_by(const DispatchTable& gl, GLuint program, const std::strin
   return !known || gl.GetUniformLocation(program, sampler.c_str()) == texture.sampler_location;
 }
 
-FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDescription& texture,
-                       ProbeSurfaces& surfaces, const std::optional<volume::Rect>& kept)
-    : gl_(*context.gl),
-      run_(run),
-      texture_(texture),
-      with_swizzle_(context.version >= 330),
+std::vector<SampledTexture> gradient_tables(const MarchContext& measured) {
+  const Pipeline& pipeline = measured.run.pipeline();
+  std::vector<SampledTexture> tables;
+  for (const std::string& name : measured.tables_of_gradients) {
+    const GLint location = measured.context.gl->GetUniformLocation(pipeline.program, name.c_str());
+    const auto table = std::ranges::find(pipeline.others, location, &SampledTexture::sampler_location);
+    if (table != pipeline.others.end() && (table->target == GL_TEXTURE_1D || table->target == GL_TEXTURE_2D))
+      tables.push_back(*table);
+  }
+  return tables;
+}
+
+FieldProbe::FieldProbe(const MarchContext& measured)
+    : gl_(*measured.context.gl),
+      run_(measured.run),
+      texture_(measured.texture),
+      with_swizzle_(measured.context.version >= 330),
       viewport_(rectangle(gl_, GL_VIEWPORT)),
       scissor_(rectangle(gl_, GL_SCISSOR_BOX)),
-      saved_(context),
-      lifted_(context, run.pipeline().program) {
+      saved_(measured.context),
+      lifted_(measured.context, measured.run.pipeline().program) {
   gl_.GetIntegerv(GL_MAX_VIEWPORT_DIMS, largest_viewport_.data());
   GLint longest = 0;
   gl_.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &longest);
   ramp_texels_ = std::clamp(longest, field_texels, most_ramp_texels);
   fine_ = std::min({finest_viewport, int(largest_viewport_[0]), int(largest_viewport_[1])});
   const volume::Rect all{viewport_[0], viewport_[1], viewport_[2], viewport_[3]};
-  free_ = kept ? intersection(all, *kept) : all;
+  free_ = measured.kept ? intersection(all, *measured.kept) : all;
   const int width = std::max(1, viewport_[0] + viewport_[2]);
   const int height = std::max(1, viewport_[1] + viewport_[3]);
 
-  const Pipeline& pipeline = run.pipeline();
+  const Pipeline& pipeline = run_.pipeline();
   for (const SampledTexture& other : pipeline.others) {
     if (!is_depth_texture(gl_, other)) continue;
     saved_.borrow_texture(GL_TEXTURE_2D, other.unit);
@@ -67,11 +78,13 @@ FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDe
     std::array<GLint, 2> size{};
     gl_.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &size[0]);
     gl_.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_HEIGHT, &size[1]);
-    surfaces.bind_far_plane(size[0], size[1]);
+    measured.surfaces.bind_far_plane(size[0], size[1]);
   }
   saved_.borrow_texture(GL_TEXTURE_3D, pipeline.volume.unit);
 
-  complete_ = surfaces.bind_framebuffer(width, height) != 0;
+  for (const SampledTexture& table : gradient_tables(measured)) show_plain({table, {1, 1, 1, 1}});
+
+  complete_ = measured.surfaces.bind_framebuffer(width, height) != 0;
   // Which of the box's faces make fragments is the application's choice. If all do, the nearest counts.
   gl_.Enable(saved_.was_enabled(GL_CULL_FACE) ? GL_CULL_FACE : GL_DEPTH_TEST);
   gl_.GetIntegerv(GL_DEPTH_FUNC, &depth_function_);
@@ -233,6 +246,19 @@ std::vector<volume::Rgba> FieldProbe::at_stripes(double x, double y, std::span<c
   return shown;
 }
 
+std::vector<volume::Rgba> FieldProbe::at_layer(double x, double y, const Layer& layer,
+                                               std::span<const float> values) {
+  std::array<int, 3> size{1, 1, 1};
+  size[layer.axis] = ramp_texels_;
+  const auto first = std::clamp(std::lround(layer.low * ramp_texels_), 0L, long{ramp_texels_});
+  const auto end = std::clamp(std::lround(layer.high * ramp_texels_), first, long{ramp_texels_});
+  return drawn_at(x, y, values.size(), [&](std::size_t i) {
+    std::vector<float> texels(std::size_t(ramp_texels_), layer.outside);
+    std::fill(texels.begin() + first, texels.begin() + end, values[i]);
+    show(texels, size, GL_NEAREST);
+  });
+}
+
 std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::size_t wanted,
                                                const std::function<void(std::size_t)>& show_field) {
   // Every draw puts the one pixel that is looked at to a place of its own, so that one read gets them all.
@@ -304,6 +330,26 @@ void FieldProbe::show_plain(const PlainTable& table) {
     gl_.TexImage1D(GL_TEXTURE_1D, 0, GL_RGBA32F, 1, 0, GL_RGBA, GL_FLOAT, table.colour.data());
   else
     gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 1, 1, 0, GL_RGBA, GL_FLOAT, table.colour.data());
+}
+
+void FieldProbe::show_coordinate(const SampledTexture& texture) {
+  constexpr GLsizei width = 2048;
+  bind_in_place_of(texture);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    gl_.TexParameteri(texture.target, filter, GL_LINEAR);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    gl_.TexParameteri(texture.target, axis, GL_CLAMP_TO_EDGE);
+  std::vector<float> colours;
+  colours.reserve(4 * std::size_t(width));
+  // The first and the last stand for the ends.
+  for (int i = 0; i < width; ++i) {
+    const float coordinate = i == 0 ? 0 : i == width - 1 ? 1 : (float(i) + 0.5F) / float(width);
+    colours.insert(colours.end(), 4, coordinate);
+  }
+  if (texture.target == GL_TEXTURE_1D)
+    gl_.TexImage1D(GL_TEXTURE_1D, 0, GL_RGBA32F, width, 0, GL_RGBA, GL_FLOAT, colours.data());
+  else
+    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, width, 1, 0, GL_RGBA, GL_FLOAT, colours.data());
 }
 
 void FieldProbe::show_instead(const SampledTexture& texture, int width, int height,

@@ -16,6 +16,7 @@
 #include "spu/volume/context/saved_state.h"
 #include "spu/volume/observation/run.h"
 #include "spu/volume/proxy/background_removal.h"
+#include "spu/volume/proxy/coordinate_space.h"
 #include "spu/volume/proxy/cuts.h"
 #include "spu/volume/proxy/probe_surfaces.h"
 #include "spu/volume/texture/texels.h"
@@ -29,9 +30,8 @@ constexpr float no_fragment = -1;
 
 class FieldProbe {
  public:
-  /// `kept`: the pixels of the window where the program keeps fragments; null: all of the viewport's.
-  FieldProbe(const GlContext& context, const Run& run, const TextureDescription& texture,
-             ProbeSurfaces& surfaces, const std::optional<volume::Rect>& kept);
+  /// Tables that are looked up by gradients are white, until others are shown in their place.
+  explicit FieldProbe(const MarchContext& measured);
   ~FieldProbe();
   FieldProbe(const FieldProbe&) = delete;
   FieldProbe& operator=(const FieldProbe&) = delete;
@@ -80,6 +80,16 @@ class FieldProbe {
     std::span<const PlainTable> tables{};
   };
   std::vector<volume::Rgba> at_stripes(double x, double y, std::span<const StripedField> fields);
+
+  /// The same over fields that have the value in a layer across the texture coordinate `axis`, and `outside`
+  /// elsewhere.
+  struct Layer {
+    std::size_t axis = 0;
+    double low = 0;
+    double high = 1;
+    float outside = 0;
+  };
+  std::vector<volume::Rgba> at_layer(double x, double y, const Layer& layer, std::span<const float> values);
 
   /// Texels along the one axis of a ramp, and of other fields that are to be as fine as can be.
   int finest_texels() const { return ramp_texels_; }
@@ -134,6 +144,9 @@ class FieldProbe {
   /// From now on the program reads this tile of numbers from `texture`, which is 2-D; rows bottom up, repeated.
   void show_instead(const SampledTexture& texture, int width, int height, std::span<const float> texels);
   void show_plain(const PlainTable& table);
+  /// From now on the program reads from `texture`, a table of 1 or 2 dimensions, the first coordinate that it
+  /// looks up, as far as that lies between 0 and 1, and the nearer of these beyond.
+  void show_coordinate(const SampledTexture& texture);
   /// It reads its own again.
   void show_own(const SampledTexture& texture);
 
@@ -200,6 +213,9 @@ class FieldProbe {
   std::map<float, BackgroundContrast> contrasts_;  ///< by value
   bool complete_ = false;
 };
+
+/// The textures of the tables that the program looks up by gradients, as far as they have 1 or 2 dimensions.
+std::vector<SampledTexture> gradient_tables(const MarchContext& measured);
 
 /// Whether `texture` is a 2-D texture of depths.
 bool is_depth_texture(const DispatchTable& gl, const SampledTexture& texture);

@@ -281,7 +281,7 @@ std::variant<volume::Light, Refusal> light_on(const SlopeProbe& slopes, const Li
   if (light.even[0] > 0 && std::ranges::all_of(by_angle, [&](const volume::LightResponse& at) {
         return std::abs(at.diffuse - 1) < visible && std::abs(at.specular) < visible;
       }))
-    return Refusal{"gradients are taken, but change no colour that is looked at"};
+    return Refusal{gradients_change_no_colour};
   light.response = by_cosine(by_angle);
   return light;
 }
@@ -476,7 +476,7 @@ bool still_lit(const MarchContext& measured, FieldProbe& probe, const ProxyBox& 
 bool gradients_still_reach(const MarchContext& measured, const ProxyBox& box, const March& march,
                            std::span<const std::size_t> axes) {
   constexpr double same = 0.1;  // of a texel
-  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
+  FieldProbe probe(measured);
   if (!probe.complete() || !held_still(measured, probe, march)) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   SlopeProbe slopes(measured, probe, march);

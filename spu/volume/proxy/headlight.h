@@ -30,6 +30,10 @@ std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchC
                                                                     FieldProbe& probe, const ProxyBox& box,
                                                                     March& march);
 
+/// The reason where a program's gradients are for something else than light.
+inline constexpr const char* gradients_change_no_colour =
+    "gradients are taken, but change no colour that is looked at";
+
 /// Whether a ray over two slopes looks as `march`, which has light, says.
 bool still_lit(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box, const March& march);
 

@@ -118,7 +118,9 @@ class KeptPixels {
 }  // namespace
 
 std::variant<volume::Rect, Refusal> kept_rect(const MarchContext& measured, const ProxyBox& box) {
-  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, std::nullopt);
+  MarchContext all_pixels = measured;
+  all_pixels.kept.reset();
+  FieldProbe probe(all_pixels);
   if (!probe.complete()) return Refusal{"the driver offers no float framebuffer to compare images in"};
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   const auto enlarged = enlarged_viewport(probe, rays);

@@ -10,6 +10,7 @@
 #include "spu/volume/proxy/exit_steps.h"
 #include "spu/volume/proxy/extreme_steps.h"
 #include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/gradient_opacity.h"
 #include "spu/volume/proxy/headlight.h"
 #include "spu/volume/proxy/march_table.h"
 #include "spu/volume/proxy/mean_steps.h"
@@ -58,7 +59,7 @@ class MarchMeasurement {
   MarchMeasurement(const MarchContext& measured, const ProxyBox& box)
       : measured_(measured),
         box_(box),
-        probe_(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept),
+        probe_(measured),
         rays_(box.camera.texture_to_clip, box.region, box.cuts) {
     for (std::size_t k = 0; k < 3; ++k) texels_.metric[4 * k] = measured.texture.size[k];
     march_.clipped = measured.clipped;
@@ -268,9 +269,13 @@ std::optional<Refusal> MarchMeasurement::measure_light() {
   if (!held_still(measured_, probe_, march_)) return "the noise at the rays' beginnings cannot be taken away";
   march_.steps = likeliest_rule();
   auto lights = measure_headlight(measured_, probe_, box_, march_);
-  if (auto* refusal = std::get_if<Refusal>(&lights)) return std::move(*refusal);
-  lights_ = std::get<std::vector<volume::Light>>(std::move(lights));
-  return std::nullopt;
+  const bool fades = !measured_.tables_of_gradients.empty();
+  auto* const refusal = std::get_if<Refusal>(&lights);
+  if (refusal != nullptr && !(fades && refusal->reason == gradients_change_no_colour))
+    return std::move(*refusal);
+  if (refusal == nullptr) lights_ = std::get<std::vector<volume::Light>>(std::move(lights));
+  if (!fades) return std::nullopt;
+  return measure_gradient_opacity(measured_, probe_, box_, refusal == nullptr, march_, lights_);
 }
 
 std::optional<double> MarchMeasurement::misplaced(const volume::RaySteps& rule, bool from_exit) const {

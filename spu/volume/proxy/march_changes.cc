@@ -11,6 +11,7 @@
 #include "spu/volume/proxy/extreme_steps.h"
 #include "spu/volume/proxy/facing_colours.h"
 #include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/gradient_opacity.h"
 #include "spu/volume/proxy/headlight.h"
 #include "spu/volume/proxy/march_table.h"
 #include "spu/volume/proxy/mean_steps.h"
@@ -29,7 +30,7 @@ namespace {
 
 /// Whether the samples of an extreme or of a mean lie where `march` says; empty where no field tells.
 std::optional<bool> samples_lie_as_said(const MarchContext& measured, const March& march, const ProxyBox& box) {
-  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
+  FieldProbe probe(measured);
   if (!probe.complete()) return std::nullopt;
   if (march.extreme) return extremes_lie_on(march.steps, measured, probe, march.table, box);
   const std::vector<float> values = values_over(measured.range);
@@ -49,7 +50,7 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
   changed.table.high = measured.range[1];
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   {
-    FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
+    FieldProbe probe(measured);
     if (!probe.complete() || !held_still(measured, probe, march)) return std::nullopt;
     if (march.background) {
       changed.background = remove_background(measured, probe, rays);
@@ -59,6 +60,11 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
     if (is_black_where_even(march) && !take_facing_colours(measured, probe, box, changed)) return std::nullopt;
     if (!fill_unseen(probe, box, march.steps, changed)) return std::nullopt;
     changed.opacity_limit = opacity_limit(changed, march.steps, probe, rays);
+  }
+  if (march.light && !march.light->gradient_opacity.factors.empty()) {
+    auto opacity = with_new_factors(measured, march);
+    if (!opacity) return std::nullopt;
+    changed.light->gradient_opacity = *std::move(opacity);
   }
   if (march.jitter) {
     changed.steps.offsets = ray_offsets(measured.context, measured.run, *march.jitter);
@@ -81,7 +87,7 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
   March changed = march;
   changed.from_inside = true;
   if (march.shows_one_colour()) return changed;  // whose steps only rays from outside tell
-  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
+  FieldProbe probe(measured);
   if (!probe.complete() || !held_still(measured, probe, march))
     return "the driver offers no float framebuffer to probe with";
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
@@ -123,7 +129,7 @@ std::optional<March> with_longer_steps(const MarchContext& measured, const March
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box,
                    const RaysLookedAt& looked_at) {
   constexpr float same_colour = 5e-3F;
-  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
+  FieldProbe probe(measured);
   if (!probe.complete() || !held_still(measured, probe, march)) return false;
   const bool already = premultiplied_already(measured, march);
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
@@ -172,6 +178,9 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   }
   if (looked_at.values > 0 && agreeing < enough) return false;
   if (march.light && !still_lit(measured, probe, box, march)) return false;
+  if (march.light && !march.light->gradient_opacity.factors.empty() &&
+      !still_fades_by_gradient(measured, probe, box, march))
+    return false;
   if (is_black_where_even(march) && !values.empty() &&
       !shows_facing_colours(measured, probe, box, march, values))
     return false;
@@ -192,7 +201,7 @@ bool still_placed(const MarchContext& measured, const March& march, const ProxyB
   if (!box.cuts.empty()) return true;
   if (march.shows_one_colour())
     return !march.steps_seen || samples_lie_as_said(measured, march, box).value_or(true);
-  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
+  FieldProbe probe(measured);
   if (!probe.complete()) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
   if (!remove_known_background(measured, probe, rays, march)) return false;

@@ -226,6 +226,7 @@ struct RayCasterStage::Draw {
   std::optional<program::NeighbourDistance> neighbours{};  ///< likewise
   std::span<const std::string> tables_of_samples{};
   std::span<const std::string> tables_of_one_texel{};
+  std::span<const std::string> tables_of_gradients{};
   std::optional<volume::Rect>
       kept{};  ///< part of the window where fragments are, where some are discarded by place
 
@@ -241,6 +242,7 @@ struct RayCasterStage::Draw {
             kept,
             neighbours,
             tables_of_one_texel,
+            tables_of_gradients,
             &*seen.capture};
   }
 };
@@ -412,6 +414,7 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   draw.ends_at_geometry = fetches_depth(context_, pipeline, says.facts);
   draw.tables_of_samples = says.ray->tables_of_samples;
   draw.tables_of_one_texel = says.ray->tables_of_one_texel;
+  draw.tables_of_gradients = says.ray->tables_of_gradients;
   draw.neighbours = neighbours_of_gradients(says);
   ProxyBox box = find_box(draw);
   draw.eye_inside = !box.cuts.empty();

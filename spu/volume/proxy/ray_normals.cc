@@ -11,9 +11,6 @@ namespace understudy::spu {
 
 using volume::Vec3;
 
-namespace {
-
-/// The central difference at `place` in parts of what it is in the middle of the texture, axis by axis.
 Vec3 seen_gradient(const EvenRise& field, const Vec3& place) {
   Vec3 seen{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -24,8 +21,6 @@ Vec3 seen_gradient(const EvenRise& field, const Vec3& place) {
   }
   return seen;
 }
-
-}  // namespace
 
 std::vector<NormalShare> ray_normals(const WayThroughBox& way, const volume::RaySteps& steps,
                                      std::span<const double> opacities, const LightSpace& space,

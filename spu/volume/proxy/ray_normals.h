@@ -34,6 +34,9 @@ struct EvenRise {
   volume::Vec3 reach{};         ///< to both sides of a sample, in texture space
 };
 
+/// The field's gradient at `place`, as central differences see it.
+volume::Vec3 seen_gradient(const EvenRise& field, const volume::Vec3& place);
+
 /// `opacities` are those of the samples, from the eye on.
 std::vector<NormalShare> ray_normals(const WayThroughBox& way, const volume::RaySteps& steps,
                                      std::span<const double> opacities, const LightSpace& space,

@@ -94,13 +94,14 @@ std::string explanation(const Pipeline& pipeline, const TextureDescription& text
                                                            : "table probed from fixed function";
   return fmt::format(
       "{}x{}x{} {} texels ({}), {}, {} filter, {}, {} camera, fit to {:.1e}, {} of {} colours, {} clip planes, "
-      "{}{}",
+      "{}{}{}",
       texture.size[0], texture.size[1], texture.size[2], name_of(texture.type), texture.format_name,
       sampling_of(request, texture.size, !image.ray_ends.empty()), name_of(request.filter), colours,
       perspective ? "perspective" : "parallel", residual, name_of(pipeline.blending),
       pipeline.blending.premultiplied ? "premultiplied" : "plain", request.clip_planes.size(),
       request.depth ? "hidden by opaque geometry" : "no opaque geometry before it",
-      request.fog ? ", fading in fog" : "");
+      request.fog ? ", fading in fog" : "",
+      request.light && !request.light->gradient_opacity.factors.empty() ? ", gradient opacity" : "");
 }
 
 }  // namespace understudy::spu

@@ -96,6 +96,25 @@ TEST(RayCasters, TellNeighboursByWhatTheirPlacesDependOn) {
   EXPECT_FALSE(address_tables_alone(by_slope.facts, by_slope.finding.samples));
 }
 
+TEST(RayCasters, TellTablesOfGradientsFromTablesOfSamples) {
+  const std::string functions =
+      "uniform sampler2D slopes;"
+      "float at(vec3 p, vec3 by) { return texture(volume, p + by).r - texture(volume, p - by).r; }"
+      "float steepness(vec3 p) {"
+      " return length(vec3(at(p, vec3(.1, 0, 0)), at(p, vec3(0, .1, 0)), at(p, vec3(0, 0, .1)))); }";
+  const Found faded =
+      caster("v.a *= texture(slopes, vec2(clamp(steepness(p) * u.y, 0.0, 1.0), 0.0)).r;", "", functions);
+  EXPECT_THAT(faded.finding.tables_of_one_texel, ElementsAre("table"));
+  EXPECT_THAT(faded.finding.tables_of_gradients, ElementsAre("slopes"));
+  EXPECT_FALSE(address_tables_alone(faded.facts, faded.finding.samples));
+  EXPECT_TRUE(address_tables_alone(faded.facts, faded.finding.samples, faded.finding.tables_of_gradients));
+  const Found of_both =
+      caster("v.a *= texture(slopes, vec2(steepness(p), texture(volume, p).r)).r;", "", functions);
+  EXPECT_THAT(of_both.finding.tables_of_gradients, IsEmpty());
+  const Found of_place = caster("v.a *= texture(slopes, vec2(steepness(p), p.x)).r;", "", functions);
+  EXPECT_THAT(of_place.finding.tables_of_gradients, IsEmpty());
+}
+
 TEST(RayCasters, TellNeighboursThatAreCountedInTexels) {
   const auto distance = [](const std::string& in_loop, const std::string& before = "") {
     const Found found = caster(in_loop, "", before);

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gradient opacity (Levoy 1988): a table that a program looks up by the length of a gradient, and multiplies a
+// sample's opacity by. While all else is measured the table is white (FieldProbe), so that even fields show
+// something. Then it is read back, and a table of coordinates in its place says where in it a slope is looked
+// up.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/march.h"
+#include "spu/volume/refusal/refusal.h"
+#include "volume/light.h"
+
+namespace understudy::spu {
+
+/// For programs that take gradients for nothing but opacity.
+volume::Light light_that_changes_nothing();
+
+/// Gives each of `lights`, which may be the program's, its gradient opacity. `lit`: gradients change colours as
+/// well; otherwise the space of gradients and their reach are measured here. `march` has steps and a table, and
+/// is given plain tables if it has none.
+std::optional<Refusal> measure_gradient_opacity(const MarchContext& measured, FieldProbe& probe,
+                                                const ProxyBox& box, bool lit, March& march,
+                                                std::vector<volume::Light>& lights);
+
+/// That of `march` with the factors that the program's table has now; none where it cannot be read any more.
+std::optional<volume::GradientOpacity> with_new_factors(const MarchContext& measured, const March& march);
+
+/// Whether slopes have the opacity that the light of `march` says.
+bool still_fades_by_gradient(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box,
+                             const March& march);
+
+}  // namespace understudy::spu

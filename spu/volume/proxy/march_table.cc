@@ -2,12 +2,16 @@
 #include "spu/volume/proxy/march_table.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <tuple>
 #include <variant>
 #include <vector>
 
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/ray_probes.h"
+#include "spu/volume/proxy/step_fit.h"
 
 namespace understudy::spu {
 
@@ -65,14 +69,75 @@ class TableRays {
     return seen;
   }
 
+  /// The ray through the middle of the view over fields that show something in a layer alone, which holds so
+  /// many of its samples or nearly so many: with the eye inside, all rays are long. None where no value is
+  /// clear, or samples are not composed by over one by one.
+  std::optional<RayOfTable> of_layer(int samples);
+
  private:
+  /// A value that shows nothing on the ray through the middle; null: there is none.
+  std::optional<float> clear_value();
+
   FieldProbe& probe_;
   const RaysThroughBox& rays_;
   const volume::RaySteps& rule_;
   const March& march_;
   bool premultiplied_;
   std::vector<float> values_;
+  bool looked_for_clear_ = false;
+  std::optional<float> clear_;
 };
+
+std::optional<float> TableRays::clear_value() {
+  if (looked_for_clear_) return clear_;
+  looked_for_clear_ = true;
+  const auto middle = rays_.middle();
+  const auto fragments = probe_.at(middle[0], middle[1], values_);
+  for (std::size_t i = 0; i < fragments.size() && !clear_; ++i) {
+    if (std::ranges::all_of(fragments[i], [](float component) { return component == 0; })) clear_ = values_[i];
+  }
+  return clear_;
+}
+
+std::optional<RayOfTable> TableRays::of_layer(int samples) {
+  constexpr double fewest_texels = 3;  // of a step
+  constexpr double whole = 0.1;        // how far a count may be from a whole number
+  if (march_.shows_one_colour() || march_.sum || march_.background || march_.alpha_twice) return std::nullopt;
+  const auto middle = rays_.middle();
+  const auto ray = rays_.through(middle[0], middle[1]);
+  const auto clear = ray ? clear_value() : std::nullopt;
+  if (!clear) return std::nullopt;
+  const std::vector<double> places = places_on_way(rule_, ray->way);
+  const std::size_t first = places.size() / 2;
+  const std::size_t end = first + std::size_t(samples);
+  if (first == 0 || end >= places.size()) return std::nullopt;
+  FieldProbe::Layer layer{0, 0, 1, *clear};
+  for (std::size_t axis = 1; axis < 3; ++axis) {
+    if (std::abs(ray->way[axis]) > std::abs(ray->way[layer.axis])) layer.axis = axis;
+  }
+  const auto between = [&](std::size_t sample) {
+    return ray->entry[layer.axis] + ray->way[layer.axis] * (places[sample - 1] + places[sample]) / 2;
+  };
+  std::tie(layer.low, layer.high) = std::minmax({between(first), between(end)});
+  if (!(layer.low > 0 && layer.high < 1) ||
+      (layer.high - layer.low) * probe_.finest_texels() < fewest_texels * samples)
+    return std::nullopt;
+  // Where in a step samples lie may not be known yet: what is seen counts them.
+  const std::array translucent{march_.translucent};
+  const auto seen_of = [&](const std::vector<Rgba>& fragments) {
+    return reached(fragments.front()) ? std::log1p(-double(premultiplied(fragments.front(), premultiplied_)[3]))
+                                      : 0;
+  };
+  const double all = seen_of(probe_.at(middle[0], middle[1], translucent));
+  const double of_layer = seen_of(probe_.at_layer(middle[0], middle[1], layer, translucent));
+  const double count = of_layer / all * double(places.size());
+  if (!(count > 1 - whole) || std::abs(count - std::round(count)) > whole) return std::nullopt;
+  RayOfTable seen{std::round(count), {}};
+  const auto fragments = probe_.at_layer(middle[0], middle[1], layer, values_);
+  if (!finite(fragments)) return std::nullopt;
+  for (const Rgba& fragment : fragments) seen.colours.push_back(premultiplied(fragment, premultiplied_));
+  return seen;
+}
 
 /// How many samples the longer ray has, going by what the shorter one tells of each. Where rays are short, at
 /// the silhouette of the box, their length changes by a sample within a small part of a pixel, and counts of
@@ -130,6 +195,15 @@ std::variant<RayOfTable, Refusal> shortest_ray(TableRays& table, const March& ma
   return no_short_ray;
 }
 
+/// The same where the eye is inside, and no ray in view is short.
+std::variant<RayOfTable, Refusal> shortest_layer(TableRays& table, std::vector<RayOfTable>& longer) {
+  auto shortest = table.of_layer(1);
+  if (!shortest) return no_short_ray;
+  longer.clear();
+  if (auto layer = table.of_layer(8)) longer.push_back(*std::move(layer));
+  return *std::move(shortest);
+}
+
 }  // namespace
 
 std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& probe,
@@ -145,7 +219,14 @@ std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& p
     if (ray == nullptr) return std::get<Refusal>(seen);
     if (std::abs(ray->samples - samples) <= samples / 2) longer.push_back(std::move(*ray));
   }
-  const auto found = shortest_ray(table, march, longer);
+  auto found = shortest_ray(table, march, longer);
+  const auto* const in_view = std::get_if<RayOfTable>(&found);
+  const bool short_enough = in_view != nullptr && in_view->samples <= most_samples_of_shortest;
+  // Over a layer there are gradients, and light changes colours.
+  if (!short_enough && !measured.neighbours) {
+    auto layer = shortest_layer(table, longer);
+    if (std::holds_alternative<RayOfTable>(layer)) found = std::move(layer);
+  }
   if (const auto* refusal = std::get_if<Refusal>(&found)) return *refusal;
   const auto& shortest = std::get<RayOfTable>(found);
   auto& entries = march.table.entries;

@@ -38,7 +38,8 @@ using Processes = std::span<const ProcessCounters* const>;
 /// Whether the GL server of one of them went away.
 bool lost_server(Processes processes);
 
-/// Whether anything was substituted, in a frame that was shown or in none; nothing where only a GL server on another machine knows.
+/// Whether anything was substituted, in a frame that was shown or in none; nothing where only a GL server on
+/// another machine knows.
 std::optional<bool> has_substituted(Processes processes);
 
 /// The report as JSON, indented, with a closing newline. Processes that neither drew nor called OpenGL are left

@@ -56,7 +56,7 @@ struct SegmentConstants : Constants {
       last_gradient_factor = hn::Set(IntTag(), std::int32_t(opacity.factors.size() - 2));
       end_of_gradient_factors = hn::Set(f, float(opacity.factors.size() - 1));
       const double factors_a_slope = double(opacity.factors.size() - 1) / (opacity.last - opacity.first);
-      // A table that is all but a step lies where a float says.
+      // Bounded, so that a very narrow range does not overflow.
       gradient_factors_a_slope = hn::Set(
           f, float(std::min(factors_a_slope / (2 * double(std::abs(Source::factor)) * double(unit)), 1e30)));
       first_gradient_factor = hn::Set(f, float(std::clamp(-opacity.first * factors_a_slope, -1e30, 1e30)));

@@ -124,6 +124,8 @@ void sort_tables(const StageFacts& facts, std::span<const std::string> volumes, 
     finding.tables_of_one_texel.push_back(table);
     samples.insert(places.begin(), places.end());
   }
+  // Without a table of samples there is no telling which texel is the sample.
+  if (samples.empty()) return;
   for (const std::string& table : finding.tables_of_samples) {
     const std::set<std::uint32_t> places = places_that_address(facts, table, volumes);
     const auto of_sample = [&](std::uint32_t place) { return samples.contains(place); };

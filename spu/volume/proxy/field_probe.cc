@@ -82,7 +82,8 @@ FieldProbe::FieldProbe(const MarchContext& measured)
   }
   saved_.borrow_texture(GL_TEXTURE_3D, pipeline.volume.unit);
 
-  for (const SampledTexture& table : gradient_tables(measured)) show_plain({table, {1, 1, 1, 1}});
+  gradient_tables_ = gradient_tables(measured);
+  show_white_gradient_tables();
 
   complete_ = measured.surfaces.bind_framebuffer(width, height) != 0;
   // Which of the box's faces make fragments is the application's choice. If all do, the nearest counts.
@@ -362,7 +363,25 @@ void FieldProbe::show_instead(const SampledTexture& texture, int width, int heig
   gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, colours.data());
 }
 
+void FieldProbe::show_white_gradient_tables() {
+  for (const SampledTexture& table : gradient_tables_) show_plain({table, {1, 1, 1, 1}});
+}
+
+void FieldProbe::show_own_gradient_tables() {
+  for (const SampledTexture& table : gradient_tables_) give_back(table);
+}
+
 void FieldProbe::show_own(const SampledTexture& texture) {
+  const auto same = [&](const SampledTexture& table) {
+    return table.target == texture.target && table.unit == texture.unit;
+  };
+  if (std::ranges::any_of(gradient_tables_, same))
+    show_plain({texture, {1, 1, 1, 1}});
+  else
+    give_back(texture);
+}
+
+void FieldProbe::give_back(const SampledTexture& texture) {
   if (std::erase(borrowed_, BorrowedTexture{texture.target, texture.unit}) == 0) return;
   // With its sampler object: the texture's own filter may be one that it has no levels for.
   saved_.give_back_texture(texture.target, texture.unit);

@@ -147,8 +147,11 @@ class FieldProbe {
   /// From now on the program reads from `texture`, a table of 1 or 2 dimensions, the first coordinate that it
   /// looks up, as far as that lies between 0 and 1, and the nearer of these beyond.
   void show_coordinate(const SampledTexture& texture);
-  /// It reads its own again.
+  /// It reads its own again, or white where that is a table of gradients.
   void show_own(const SampledTexture& texture);
+  /// It reads its own tables of gradients, or white ones again.
+  void show_own_gradient_tables();
+  void show_white_gradient_tables();
 
   /// The application's viewport in its window.
   int left() const { return viewport_[0]; }
@@ -173,6 +176,7 @@ class FieldProbe {
   };
   static Heights heights_of(const EvenSlope& slope);
   void bind_in_place_of(const SampledTexture& texture);
+  void give_back(const SampledTexture& texture);
   bool of_bytes(std::span<const float> texels) const;
   void show(std::span<const float> texels, const std::array<int, 3>& size, GLint filter);
   void show(const std::array<float, 8>& corners);
@@ -201,6 +205,7 @@ class FieldProbe {
   GLint depth_function_ = 0;  ///< the application's
   SavedState saved_;
   LiftedCuts lifted_;
+  std::vector<SampledTexture> gradient_tables_;
   std::vector<GLuint> textures_;
   struct BorrowedTexture {
     GLenum target = 0;

@@ -12,6 +12,7 @@
 #include "spu/volume/proxy/light_space.h"
 #include "spu/volume/proxy/plain_tables.h"
 #include "spu/volume/proxy/ray_normals.h"
+#include "spu/volume/proxy/ray_probes.h"
 #include "spu/volume/proxy/slope_probe.h"
 #include "spu/volume/proxy/step_fit.h"
 #include "spu/volume/texture/texture_parameter.h"
@@ -28,57 +29,51 @@ namespace {
 const Refusal unknown_opacity{
     "opacity depends on how steep a gradient is in another way than by one table of its length"};
 
-constexpr FieldProbe::PlainTable white(const SampledTexture& table) {
-  return {table, {1, 1, 1, 1}};
+/// Whether it is filtered linearly, without mipmaps, and its ends hold beyond. (Under GL_CLAMP they mix with
+/// the border.)
+bool is_plain_table(const GlContext& context, GLenum target) {
+  const DispatchTable& gl = *context.gl;
+  const GLint sampler = bound_sampler(context);
+  const auto is = [&](GLenum name, GLint value) {
+    return texture_parameter(gl, target, sampler, name) == value;
+  };
+  return is(GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE) && is(GL_TEXTURE_MIN_FILTER, GL_LINEAR) &&
+         is(GL_TEXTURE_MAG_FILTER, GL_LINEAR) && texture_parameter(gl, target, 0, GL_TEXTURE_BASE_LEVEL) == 0;
 }
 
-/// The program's own table for as long as it lives, and the white one again then.
-class OwnTable {
- public:
-  OwnTable(FieldProbe& probe, const SampledTexture& table) : probe_(probe), table_(table) {
-    probe_.show_own(table_);
+/// One channel of texels, row by row, whose rows are alike; empty where they are not, or one is no part of 1.
+std::vector<float> factors_of(std::span<const Rgba> texels, std::size_t width, std::size_t channel) {
+  std::vector<float> factors;
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const float factor = texels[i][channel];
+    if (!(factor >= 0 && factor <= 1)) return {};
+    if (i < width) factors.push_back(factor);
+    if (factors[i % width] != factor) return {};
   }
-  ~OwnTable() { probe_.show_plain(white(table_)); }
-  OwnTable(const OwnTable&) = delete;
-  OwnTable& operator=(const OwnTable&) = delete;
+  if (factors.size() == 1) factors.push_back(factors.front());
+  return factors;
+}
 
- private:
-  FieldProbe& probe_;
-  const SampledTexture& table_;
-};
-
-/// One channel of the texels that are looked up by the first coordinate; empty where they are not filtered
-/// linearly, the ends do not hold beyond, or there are several rows that differ. The program's own texture is
-/// bound.
+/// One channel of the texels that are looked up by the first coordinate; empty where it cannot be told what is
+/// between or beyond them. The program's own texture is bound.
 std::vector<float> factors_in(const GlContext& context, const SampledTexture& table, std::size_t channel) {
   constexpr GLint most_rows = 16;
   const DispatchTable& gl = *context.gl;
   GLint active = 0;
   gl.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
   gl.ActiveTexture(GLenum(GL_TEXTURE0 + table.unit));
-  const GLint sampler = bound_sampler(context);
   GLint width = 0;
   GLint height = 0;
   gl.GetTexLevelParameteriv(table.target, 0, GL_TEXTURE_WIDTH, &width);
   gl.GetTexLevelParameteriv(table.target, 0, GL_TEXTURE_HEIGHT, &height);
-  const GLint wrap = texture_parameter(gl, table.target, sampler, GL_TEXTURE_WRAP_S);
-  std::vector<float> factors;
-  if (width >= 1 && width <= GLint(volume::max_gradient_opacities) && height >= 1 && height <= most_rows &&
-      (wrap == GL_CLAMP_TO_EDGE || wrap == GL_CLAMP) &&
-      texture_parameter(gl, table.target, sampler, GL_TEXTURE_MAG_FILTER) == GL_LINEAR) {
-    std::vector<Rgba> texels(std::size_t(width) * std::size_t(height));
+  std::vector<Rgba> texels;
+  if (is_plain_table(context, table.target) && width >= 1 && width <= GLint(volume::max_gradient_opacities) &&
+      height >= 1 && height <= most_rows) {
+    texels.resize(std::size_t(width) * std::size_t(height));
     gl.GetTexImage(table.target, 0, GL_RGBA, GL_FLOAT, texels.data());
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-      const float factor = std::clamp(texels[i][channel], 0.0F, 1.0F);
-      if (i < std::size_t(width)) factors.push_back(factor);
-      if (factors[i % std::size_t(width)] == factor) continue;
-      factors.clear();
-      break;
-    }
   }
   gl.ActiveTexture(GLenum(active));
-  if (factors.size() == 1) factors.push_back(factors.front());
-  return factors;
+  return factors_of(texels, std::size_t(std::max(width, 1)), channel);
 }
 
 /// Factors whose table is looked up at 1 by slopes of `steepest`.
@@ -98,7 +93,8 @@ class FadedRay {
         ray_(ray),
         samples_(double(places_on_way(march.steps, ray.way.way).size())) {}
 
-  /// Of samples that are looked up at `coordinate` under the table of coordinates, those of an unfaded one.
+  /// The optical depth of a sample that is looked up at `coordinate` under the table of coordinates; 1 is that
+  /// of a sample under the white table.
   double depth_at(double coordinate) const {
     return std::log1p(-ray_.plain_opacity * coordinate) / std::log1p(-ray_.plain_opacity);
   }
@@ -107,11 +103,15 @@ class FadedRay {
     int width = 1;  ///< in multiples of FieldProbe::split_unit
     double difference = 0;
   };
-  /// The samples' optical depths, in those of an unfaded one, on average over where stripes begin.
+  /// The samples' mean optical depth, likewise, on average over where stripes begin.
   std::optional<double> depth_over(const Stripes& stripes, int shifts) const;
-  /// The ray's opacity over an even slope, less what `opacity` makes of it in `space`; null: nothing is seen.
-  std::optional<double> unexplained(const Vec3& gradient, double steepness, const volume::Light& light,
-                                    const GradientOpacity& opacity) const;
+  /// What the ray shows of an even slope, premultiplied.
+  Rgba over(const Vec3& gradient, double steepness) const;
+  /// The opacity that `opacity` makes of it, in the space of `light`.
+  double opacity_over(const Vec3& gradient, double steepness, const volume::Light& light,
+                      const GradientOpacity& opacity) const;
+  const Vec3& way() const { return ray_.way.way; }
+  const SlopeProbe& slopes() const { return slopes_; }
 
  private:
   FieldProbe& probe_;
@@ -138,18 +138,20 @@ std::optional<double> FadedRay::depth_over(const Stripes& stripes, int shifts) c
   return depth / (shifts * samples_);
 }
 
-std::optional<double> FadedRay::unexplained(const Vec3& gradient, double steepness, const volume::Light& light,
-                                            const GradientOpacity& opacity) const {
+Rgba FadedRay::over(const Vec3& gradient, double steepness) const {
+  return slopes_.over(ray_, {ray_.values.front()}, gradient, steepness).front();
+}
+
+double FadedRay::opacity_over(const Vec3& gradient, double steepness, const volume::Light& light,
+                              const GradientOpacity& opacity) const {
   const LightSpace space(light, ray_.way.way);
   const EvenRise field = slopes_.rise(gradient, steepness, light.reach);
-  const std::vector<Rgba> shown = slopes_.over(ray_, {ray_.values.front()}, gradient, steepness);
-  if (shown.front()[3] == no_fragment) return std::nullopt;
   double through = 1;
   for (const double place : places_on_way(steps_, ray_.way.way)) {
     const Vec3 point = volume::add(ray_.way.entry, volume::scale(ray_.way.way, place));
     through *= 1 - ray_.plain_opacity * opacity.at(space.slope(seen_gradient(field, point)));
   }
-  return double(shown.front()[3]) - (1 - through);
+  return 1 - through;
 }
 
 /// How a program looks gradients along one axis up.
@@ -158,8 +160,8 @@ struct AxisLookup {
   double coordinate = 0;  ///< in the table, of a slope of 1 per unit of texture space
 };
 
-/// By stripes: samples within reach of where two meet have a gradient. So steep a one that it is looked up at
-/// the table's end tells the reach, a gentler one the coordinate.
+/// Measured on stripes: samples within reach of where two stripes meet have a gradient. How many have one tells
+/// the reach, when all of them are looked up at the table's end; gentler gradients then tell the coordinate.
 std::optional<AxisLookup> lookup_along(const FadedRay& ray, const SlopeProbe& slopes, std::size_t axis,
                                        const std::array<int, 3>& size, double range) {
   constexpr int shifts = 32;
@@ -236,25 +238,55 @@ void take_space(std::span<const std::optional<AxisLookup>> axes, const std::arra
 /// Slopes that differ in direction and steepness.
 constexpr std::array<Vec3, 4> directions{{{1, 0.4, -0.3}, {-0.2, 1, 0.5}, {0.3, -0.6, 1}, {1, 1, 1}}};
 
-/// Whether the ray's opacities are those of `opacity`, of a slope that is looked up at each of these
+/// By so much do slopes in `gradient` rise that are looked up at the table's end.
+double steepness_at_end(const FadedRay& ray, const Vec3& gradient, const volume::Light& light,
+                        double steepest) {
+  return steepest / LightSpace(light, ray.way()).slope(ray.slopes().rise(gradient, 1, light.reach).gradient);
+}
+
+/// Whether the ray's opacities are those of `opacity`, of slopes that are looked up at each of these
 /// coordinates.
-bool is_explained(const FadedRay& ray, const SlopeProbe& slopes, const Vec3& way, const volume::Light& light,
-                  const GradientOpacity& opacity, std::span<const Vec3> gradients,
-                  std::span<const double> coordinates) {
-  constexpr double same = 0.02;
-  const LightSpace space(light, way);
-  const double steepest = opacity.first + opacity.last;
+bool is_explained(const FadedRay& ray, const volume::Light& light, const GradientOpacity& opacity,
+                  double steepest, std::span<const Vec3> gradients, std::span<const double> coordinates,
+                  double same) {
   for (const Vec3& gradient : gradients) {
-    const double unit = space.slope(slopes.rise(gradient, 1, light.reach).gradient);
+    const double at_end = steepness_at_end(ray, gradient, light, steepest);
     for (const double coordinate : coordinates) {
-      const auto rest = ray.unexplained(gradient, coordinate * steepest / unit, light, opacity);
-      if (!rest || !(std::abs(*rest) <= same)) return false;
+      const Rgba shown = ray.over(gradient, coordinate * at_end);
+      const double expected = ray.opacity_over(gradient, coordinate * at_end, light, opacity);
+      if (shown[3] == no_fragment || !(std::abs(double(shown[3]) - expected) <= same)) return false;
     }
   }
   return true;
 }
 
-}  // namespace
+/// What the table of coordinates is.
+GradientOpacity coordinates_over_slopes(double steepest) {
+  return {{0, 1}, 0, steepest};
+}
+
+double steepest_of(const volume::Light& light) {
+  return light.gradient_opacity.first + light.gradient_opacity.last;
+}
+
+/// Whether colours over opacities stay what they are under the white table: the program's own is bound, and
+/// then the white one.
+bool keeps_colours(FieldProbe& probe, const FadedRay& ray, const volume::Light& light) {
+  constexpr double same = 0.02;
+  constexpr float tells = 0.05F;
+  for (const double coordinate : {0.15, 0.4, 0.8}) {
+    const Vec3& gradient = directions.front();
+    const double steepness = coordinate * steepness_at_end(ray, gradient, light, steepest_of(light));
+    probe.show_own_gradient_tables();
+    const Rgba faded = ray.over(gradient, steepness);
+    probe.show_white_gradient_tables();
+    const Rgba plain = ray.over(gradient, steepness);
+    if (faded[3] < tells) continue;
+    const Tint expected = tint_of(plain);
+    if (difference(tint_of(faded), expected) > same * std::max(1.0, brightest({expected}))) return false;
+  }
+  return true;
+}
 
 volume::Light light_that_changes_nothing() {
   volume::Light light;
@@ -264,53 +296,103 @@ volume::Light light_that_changes_nothing() {
   return light;
 }
 
+using AxisLookups = std::array<std::optional<AxisLookup>, 3>;
+
+/// None where no axis tells.
+std::optional<AxisLookups> lookups(const MarchContext& measured, const FadedRay& ray) {
+  AxisLookups axes;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    axes[axis] = lookup_along(ray, ray.slopes(), axis, measured.texture.size,
+                              double(measured.range[1]) - double(measured.range[0]));
+  if (std::ranges::none_of(axes, [](const auto& axis) { return axis.has_value(); })) return std::nullopt;
+  return axes;
+}
+
+/// Whether the light's gradients look as far as those that the table is looked up by.
+bool reaches_agree(const AxisLookups& axes, const volume::Light& light) {
+  constexpr double same = 0.25;  // of a texel
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (axes[axis] && std::abs(axes[axis]->reach - light.reach[axis]) > same) return false;
+  }
+  return true;
+}
+
+/// Gives the lights the scale of the table, with the table of coordinates for factors; false where no scale
+/// explains what `ray`, a long one, and `brief`, of few dense samples, show under that table. (A program that
+/// corrects opacities for its step after it has faded them shows other ones where samples are dense.)
+bool take_scales(const AxisLookups& axes, const FadedRay& ray, const FadedRay& brief,
+                 std::vector<volume::Light>& lights) {
+  constexpr std::array few{0.25, 0.5};
+  constexpr std::array many{0.0, 0.1, 0.5, 1.5};
+  return std::ranges::all_of(lights, [&](volume::Light& light) {
+    const auto steepest = steepest_in_table(LightSpace(light, ray.way()), axes);
+    if (!steepest || !reaches_agree(axes, light)) return false;
+    light.gradient_opacity = coordinates_over_slopes(*steepest);
+    return is_explained(ray, light, light.gradient_opacity, *steepest, std::span(directions).first(2), many,
+                        0.02) &&
+           is_explained(brief, light, light.gradient_opacity, *steepest, std::span(directions).first(1), few,
+                        0.012);
+  });
+}
+
+/// Gives the lights the factors of the channel that explains what the ray shows under the program's own table;
+/// false where none does.
+bool take_factors(const MarchContext& measured, FieldProbe& probe, const SampledTexture& table,
+                  const FadedRay& ray, March& march, std::vector<volume::Light>& lights) {
+  constexpr std::array coordinates{0.0, 0.03, 0.15, 0.4, 0.8, 1.5};
+  // VTK reads the red one.
+  for (const std::size_t channel : {0U, 3U, 1U, 2U}) {
+    probe.show_own_gradient_tables();
+    const std::vector<float> factors = factors_in(measured.context, table, channel);
+    if (factors.empty()) continue;
+    march.gradient_opacity_channel = channel;
+    const bool explains = std::ranges::all_of(lights, [&](volume::Light& light) {
+      const double steepest = steepest_of(light);
+      light.gradient_opacity = over_slopes(factors, steepest);
+      return is_explained(ray, light, light.gradient_opacity, steepest, directions, coordinates, 0.02);
+    });
+    if (explains) return keeps_colours(probe, ray, lights.front());
+  }
+  return false;
+}
+
+/// A ray of so many samples under plain tables; none where there are none.
+std::optional<RayUnderPlainTables> plain_ray(const MarchContext& measured, FieldProbe& probe,
+                                             const March& march, const RaysThroughBox& rays, double samples) {
+  const Ray ray = ray_of_length(rays, march.steps, samples + march.steps.first - 0.5);
+  const auto way = rays.through(ray.x, ray.y);
+  if (!way || std::abs(ray.length - samples) > 2) return std::nullopt;
+  return under_plain_tables(measured, probe, march, LitRay{ray.x, ray.y, *way});
+}
+
+}  // namespace
+
 std::optional<Refusal> measure_gradient_opacity(const MarchContext& measured, FieldProbe& probe,
                                                 const ProxyBox& box, bool lit, March& march,
                                                 std::vector<volume::Light>& lights) {
+  constexpr double few_samples = 8;
   const std::vector<SampledTexture> tables = gradient_tables(measured);
   if (measured.tables_of_gradients.size() != 1 || tables.size() != 1) return unknown_opacity;
-  const SampledTexture& table = tables.front();
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   SlopeProbe slopes(measured, probe, march);
   const std::vector<LitRay> longest = long_rays(rays, march.steps);
   if (longest.empty()) return unknown_opacity;
   const auto plain = under_plain_tables(measured, probe, march, longest.front());
-  if (!plain) return unknown_opacity;
-  if (!march.plain_tables) march.plain_tables = plain->tables;
+  const auto plain_brief = plain_ray(measured, probe, march, rays, few_samples);
+  if (!plain || !plain_brief) return unknown_opacity;
+  march.tables_under_gradients = plain->tables;
   const FadedRay ray(probe, slopes, march, plain->ray);
-  std::array<std::optional<AxisLookup>, 3> axes;
-  probe.show_coordinate(table);
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    axes[axis] = lookup_along(ray, slopes, axis, measured.texture.size,
-                              double(measured.range[1]) - double(measured.range[0]));
-  probe.show_plain(white(table));
-  if (std::ranges::none_of(axes, [](const auto& axis) { return axis.has_value(); })) return unknown_opacity;
+  const FadedRay brief(probe, slopes, march, plain_brief->ray);
+  probe.show_coordinate(tables.front());
+  const auto axes = lookups(measured, ray);
+  if (!axes) return unknown_opacity;
   if (!lit) {
-    volume::Light light = light_that_changes_nothing();
-    take_space(axes, measured.texture.size, light);
-    lights = {light};
+    lights = {light_that_changes_nothing()};
+    take_space(*axes, measured.texture.size, lights.front());
   }
-  for (volume::Light& light : lights) {
-    const auto steepest = steepest_in_table(LightSpace(light, plain->ray.way.way), axes);
-    if (!steepest) return unknown_opacity;
-    light.gradient_opacity = {{}, 0, *steepest};
-  }
-  const OwnTable own(probe, table);
-  const auto explains = [&](const volume::Light& light) {
-    constexpr std::array coordinates{0.03, 0.15, 0.4, 0.8};
-    return is_explained(ray, slopes, plain->ray.way.way, light, light.gradient_opacity, directions,
-                        coordinates);
-  };
-  // Red in VTK's.
-  for (const std::size_t channel : {0U, 3U, 1U, 2U}) {
-    const std::vector<float> factors = factors_in(measured.context, table, channel);
-    if (factors.empty()) continue;
-    for (volume::Light& light : lights)
-      light.gradient_opacity = over_slopes(factors, light.gradient_opacity.first + light.gradient_opacity.last);
-    march.gradient_opacity_channel = channel;
-    if (std::ranges::all_of(lights, explains)) return std::nullopt;
-  }
-  return unknown_opacity;
+  if (!take_scales(*axes, ray, brief, lights)) return unknown_opacity;
+  if (!take_factors(measured, probe, tables.front(), ray, march, lights)) return unknown_opacity;
+  return std::nullopt;
 }
 
 std::optional<GradientOpacity> with_new_factors(const MarchContext& measured, const March& march) {
@@ -323,21 +405,36 @@ std::optional<GradientOpacity> with_new_factors(const MarchContext& measured, co
   return over_slopes(std::move(factors), before.first + before.last);
 }
 
+bool fades_by_gradient(const March& march) {
+  return march.light && !march.light->gradient_opacity.factors.empty();
+}
+
 bool still_fades_by_gradient(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box,
                              const March& march) {
+  constexpr std::array coordinates{0.1, 0.5};
   const std::vector<SampledTexture> tables = gradient_tables(measured);
   if (tables.size() != 1) return false;
+  const volume::Light& light = *march.light;
+  probe.show_own_gradient_tables();
+  const std::vector<float> factors =
+      factors_in(measured.context, tables.front(), march.gradient_opacity_channel);
+  probe.show_white_gradient_tables();
+  if (factors != light.gradient_opacity.factors) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
-  SlopeProbe slopes(measured, probe, march);
   const std::vector<LitRay> longest = long_rays(rays, march.steps);
   if (longest.empty()) return true;
-  const auto plain = under_known_tables(measured, probe, march, longest.front());
+  March under_tables = march;
+  under_tables.plain_tables = march.tables_under_gradients;
+  const auto plain = under_known_tables(measured, probe, under_tables, longest.front());
   if (!plain) return false;
+  SlopeProbe slopes(measured, probe, under_tables);
   const FadedRay ray(probe, slopes, march, *plain);
-  const OwnTable own(probe, tables.front());
-  constexpr std::array coordinates{0.1, 0.5};
-  return is_explained(ray, slopes, plain->way.way, *march.light, march.light->gradient_opacity,
-                      std::span(directions).first(1), coordinates);
+  // Whatever the shape of the program's table, this one tells where slopes are looked up.
+  probe.show_coordinate(tables.front());
+  const bool holds = is_explained(ray, light, coordinates_over_slopes(steepest_of(light)), steepest_of(light),
+                                  std::span(directions).first(1), coordinates, 0.02);
+  probe.show_white_gradient_tables();
+  return holds;
 }
 
 }  // namespace understudy::spu

@@ -15,18 +15,18 @@
 
 namespace understudy::spu {
 
-/// For programs that take gradients for nothing but opacity.
-volume::Light light_that_changes_nothing();
-
 /// Gives each of `lights`, which may be the program's, its gradient opacity. `lit`: gradients change colours as
 /// well; otherwise the space of gradients and their reach are measured here. `march` has steps and a table, and
-/// is given plain tables if it has none.
+/// is told how to look at gradients again.
 std::optional<Refusal> measure_gradient_opacity(const MarchContext& measured, FieldProbe& probe,
                                                 const ProxyBox& box, bool lit, March& march,
                                                 std::vector<volume::Light>& lights);
 
 /// That of `march` with the factors that the program's table has now; none where it cannot be read any more.
 std::optional<volume::GradientOpacity> with_new_factors(const MarchContext& measured, const March& march);
+
+/// Whether the march has gradient opacity.
+bool fades_by_gradient(const March& march);
 
 /// Whether slopes have the opacity that the light of `march` says.
 bool still_fades_by_gradient(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box,

@@ -77,6 +77,8 @@ struct March {
   /// Under which `light` was measured and is looked at again; null: under the program's own.
   std::optional<PlainTables> plain_tables;
   std::size_t gradient_opacity_channel = 0;  ///< of the program's table of gradients
+  /// Under which the light's gradient opacity is looked at again.
+  std::optional<PlainTables> tables_under_gradients;
   /// Slopes by which `light` is measured and looked at again are at most so many times as steep as the gentlest
   /// that tell (SlopeProbe::over_steep).
   double slope_steepness = 16;

@@ -61,7 +61,7 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
     if (!fill_unseen(probe, box, march.steps, changed)) return std::nullopt;
     changed.opacity_limit = opacity_limit(changed, march.steps, probe, rays);
   }
-  if (march.light && !march.light->gradient_opacity.factors.empty()) {
+  if (fades_by_gradient(march)) {
     auto opacity = with_new_factors(measured, march);
     if (!opacity) return std::nullopt;
     changed.light->gradient_opacity = *std::move(opacity);
@@ -178,9 +178,9 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   }
   if (looked_at.values > 0 && agreeing < enough) return false;
   if (march.light && !still_lit(measured, probe, box, march)) return false;
-  if (march.light && !march.light->gradient_opacity.factors.empty() &&
-      !still_fades_by_gradient(measured, probe, box, march))
-    return false;
+  // Under the white table no other look would tell that a program has begun to fade, or has ceased.
+  if (fades_by_gradient(march) == measured.tables_of_gradients.empty()) return false;
+  if (fades_by_gradient(march) && !still_fades_by_gradient(measured, probe, box, march)) return false;
   if (is_black_where_even(march) && !values.empty() &&
       !shows_facing_colours(measured, probe, box, march, values))
     return false;

@@ -122,15 +122,16 @@ std::optional<RayOfTable> TableRays::of_layer(int samples) {
   if (!(layer.low > 0 && layer.high < 1) ||
       (layer.high - layer.low) * probe_.finest_texels() < fewest_texels * samples)
     return std::nullopt;
-  // Where in a step samples lie may not be known yet: what is seen counts them.
+  // The layer may hold one sample more or less, because where in a step samples lie is not known yet. Opacities
+  // of a translucent value on all of the ray and in the layer tell how many it holds.
   const std::array translucent{march_.translucent};
   const auto seen_of = [&](const std::vector<Rgba>& fragments) {
     return reached(fragments.front()) ? std::log1p(-double(premultiplied(fragments.front(), premultiplied_)[3]))
                                       : 0;
   };
   const double all = seen_of(probe_.at(middle[0], middle[1], translucent));
-  const double of_layer = seen_of(probe_.at_layer(middle[0], middle[1], layer, translucent));
-  const double count = of_layer / all * double(places.size());
+  const double in_layer = seen_of(probe_.at_layer(middle[0], middle[1], layer, translucent));
+  const double count = in_layer / all * double(places.size());
   if (!(count > 1 - whole) || std::abs(count - std::round(count)) > whole) return std::nullopt;
   RayOfTable seen{std::round(count), {}};
   const auto fragments = probe_.at_layer(middle[0], middle[1], layer, values_);

@@ -414,8 +414,8 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   draw.ends_at_geometry = fetches_depth(context_, pipeline, says.facts);
   draw.tables_of_samples = says.ray->tables_of_samples;
   draw.tables_of_one_texel = says.ray->tables_of_one_texel;
-  draw.tables_of_gradients = says.ray->tables_of_gradients;
   draw.neighbours = neighbours_of_gradients(says);
+  if (draw.neighbours) draw.tables_of_gradients = says.ray->tables_of_gradients;
   ProxyBox box = find_box(draw);
   draw.eye_inside = !box.cuts.empty();
   // Says what values there are.

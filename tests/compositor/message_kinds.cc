@@ -77,7 +77,8 @@ RenderRequest some_request(bool colours, bool depth) {
                     {1, 2, 0.5},
                     {0.5F, 0.25F, 1},
                     1.5F,
-                    {{1, -0.5F}, {0.25F, 0}, {0, 2}}};
+                    {{1, -0.5F}, {0.25F, 0}, {0, 2}},
+                    {{0.25F, 1, 0.5F}, 0.125, 3}};
   }
   if (!colours) r.fog = Fog{{0.5, -0.25, 2}, 0.125, {{0, 0, 0, 1}, {0.1F, 0.2F, 0.3F, 0.5F}}};
   r.opacity_limit = 0.95F;

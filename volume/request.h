@@ -82,10 +82,10 @@ struct RenderRequest {
 inline bool may_cover_whole_rays(const RenderRequest& request) {
   const auto& steps = request.steps;
   return steps && steps->first == 0.5 && !steps->divided && steps->past_depth == 0 && !steps->offsets &&
-         !steps->counted_from && request.op == Operator::over && request.filter == Filter::linear &&
-         std::holds_alternative<TransferFunction>(request.classification) && !request.fog &&
-         request.method == Method::post_classified && request.surfaces.empty() && !request.light &&
-         request.opacity_limit == 1;
+         !steps->counted_from && !steps->at_least_one && request.op == Operator::over &&
+         request.filter == Filter::linear && std::holds_alternative<TransferFunction>(request.classification) &&
+         !request.fog && request.method == Method::post_classified && request.surfaces.empty() &&
+         !request.light && request.opacity_limit == 1;
 }
 
 /// Below this transparency nothing more of a ray is asked for: below `termination`, or where it has reached its

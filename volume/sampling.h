@@ -61,22 +61,26 @@ struct RaySteps {
   /// lie beyond the region, where the field is what the texture's wrapping makes of it; the texture does not
   /// repeat, the region is all of it, and there are no clip planes. Null: samples lie up to L.
   std::optional<double> counted_from;
+  /// Every ray has its first sample: a ray that is too short for one, and one whose first sample lies beyond
+  /// its end or behind the opaque geometry (not one whose entry does). So sample programs that look for the end
+  /// only after a sample, as VTK's. Beyond the region as for `counted_from`.
+  bool at_least_one = false;
   /// The samples stand for the whole of their ray (the midpoint rule): sample i for the step around it, the
   /// last one for all that is left, a half to one and a half steps, with the opacity and colour of that length.
   /// A ray shorter than a step has one sample, in its middle. Steps begin where the ray does, at a clip plane
   /// or the near plane if that cuts the region, and end before opaque geometry. `first` is 0.5, and none of
-  /// `divided`, `past_depth`, `offsets` and `counted_from` is set. For post-classified samples of a transfer
-  /// function under `over`, without fog, light or an opacity limit.
+  /// `divided`, `past_depth`, `offsets`, `counted_from` and `at_least_one` is set. For post-classified samples
+  /// of a transfer function under `over`, without fog, light or an opacity limit.
   bool cover_whole_ray = false;
 
   /// By so many steps, at most, do samples lie beyond the end of their ray.
   double beyond_end() const {
-    if (!counted_from) return 0;
+    if (!counted_from && (!at_least_one || divided)) return 0;
     double latest = 0;
     if (offsets) {
       for (const float offset : offsets->steps) latest = std::max(latest, double(offset));
     }
-    return std::max(0.0, first + latest - *counted_from);
+    return std::max(0.0, first + latest - (at_least_one ? 0 : *counted_from));
   }
   bool operator==(const RaySteps&) const = default;
 };

@@ -120,6 +120,7 @@ void write(Writer& out, const std::optional<RaySteps>& steps) {
   out.real(steps->past_depth);
   out.integer(steps->counted_from.has_value());
   if (steps->counted_from) out.real(*steps->counted_from);
+  out.integer(steps->at_least_one);
   out.integer(steps->cover_whole_ray);
   out.integer(steps->offsets.has_value());
   if (!steps->offsets) return;
@@ -137,6 +138,7 @@ std::optional<RaySteps> read_steps(Reader& in) {
   steps.rounding = in.real("steps.rounding");
   steps.past_depth = in.real("steps.past_depth");
   if (in.flag("steps.has_counted_from")) steps.counted_from = in.real("steps.counted_from");
+  steps.at_least_one = in.flag("steps.at_least_one");
   steps.cover_whole_ray = in.flag("steps.cover_whole_ray");
   if (!in.flag("steps.offsets")) return steps;
   RayOffsets& offsets = steps.offsets.emplace();

@@ -46,6 +46,7 @@ RenderRequest some_request(bool colours, bool depth) {
   r.steps = RaySteps{{1, 2, 3, 4, 5, 6, 7, 8, 10}, 0.5, true, 0.25, 2};
   r.steps->cover_whole_ray = !depth;
   if (depth) r.steps->counted_from = 0.25;
+  r.steps->at_least_one = depth;
   if (depth) r.steps->offsets = RayOffsets{3, 2, {0, 0.5F, 0.25F, 0.125F, 1, 2}};
   r.op = Operator::min;
   r.filter = Filter::nearest;

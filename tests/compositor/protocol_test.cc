@@ -53,6 +53,7 @@ TEST(Protocol, EveryFieldOfARequestArrives) {
   EXPECT_EQ(got.steps->rounding, sent.steps->rounding);
   EXPECT_EQ(got.steps->past_depth, sent.steps->past_depth);
   EXPECT_EQ(got.steps->counted_from, sent.steps->counted_from);
+  EXPECT_EQ(got.steps->at_least_one, sent.steps->at_least_one);
   EXPECT_EQ(got.steps->cover_whole_ray, sent.steps->cover_whole_ray);
   ASSERT_TRUE(got.steps->offsets.has_value());
   EXPECT_EQ(got.steps->offsets->width, sent.steps->offsets->width);

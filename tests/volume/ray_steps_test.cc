@@ -38,6 +38,7 @@ struct Case {
   Operator op;
   bool offset = false;                      ///< every ray begins at a place of its own
   std::optional<double> counted_from = {};  ///< RaySteps' own
+  bool at_least_one = false;                ///< likewise
 };
 
 std::vector<Case> cases() {
@@ -55,7 +56,17 @@ std::vector<Case> cases() {
           {"perspective, parts moved by noise", usual, 0, true, Operator::add, true, 0},
           {"perspective, a part of a step beyond", usual, 0.5, false, Operator::over, false, 0},
           {"parallel, a whole step beyond", parallel_camera(), 1, false, Operator::add, false, 0},
-          {"perspective, a step less", usual, 0, false, Operator::over, false, 1}};
+          {"perspective, a step less", usual, 0, false, Operator::over, false, 1},
+          {"perspective, long steps by noise, one at least", usual, 0, false, Operator::over, true, {}, true},
+          {"parallel, a step and a half in, one at least",
+           parallel_camera(),
+           1.5,
+           false,
+           Operator::max,
+           false,
+           {},
+           true},
+          {"perspective, divided, one at least", usual, 0.5, true, Operator::over, false, {}, true}};
 }
 
 RenderRequest request_of(const Texture& texture, const Case& c) {
@@ -66,7 +77,11 @@ RenderRequest request_of(const Texture& texture, const Case& c) {
   if (c.offset) request.steps->offsets = RayOffsets{3, 2, {0.1F, 0.9F, 0.4F, 0.7F, 0, 0.3F}};
   request.op = c.op;
   request.steps->counted_from = c.counted_from;
-  if (!c.counted_from) request.region = {{0.03, 0, 0.05}, {0.97, 0.9, 1}};
+  request.steps->at_least_one = c.at_least_one;
+  // As long as the box is deep: most rays are too short for their first sample.
+  if (c.at_least_one)
+    for (double& number : request.steps->metric) number /= 20;
+  if (!c.counted_from && !c.at_least_one) request.region = {{0.03, 0, 0.05}, {0.97, 0.9, 1}};
   return request;
 }
 
@@ -91,7 +106,7 @@ TEST(RaySteps, GiveTheImageOfTheReference) {
       Image image(request.window);
       FrameCounts counts;
       raycast(store, request, image, counts);
-      EXPECT_GT(counts.samples, 10000U) << c.name;
+      EXPECT_GT(counts.samples, c.at_least_one ? 800U : 10000U) << c.name;
       const Difference d = difference(image, slice_sum(field, request, request.window), 1e-3);
       std::printf("%s: largest %.1e, rms %.1e\n", c.name, d.max, d.rms);
       EXPECT_LE(d.pixels_over, pixels_at_the_end) << c.name;
@@ -111,7 +126,7 @@ TEST(RaySteps, EndAtOpaqueGeometryAndClipPlanes) {
   const BrickStore store = filled(texture);
   for (const double past : {0.0, 1.0})
     for (const Case& c : cases()) {
-      if (c.counted_from) continue;  // know no clip planes
+      if (c.counted_from || c.at_least_one) continue;  // know no clip planes
       RenderRequest request = request_of(texture, c);
       request.steps->past_depth = past;
       request.clip_planes = {{{1, 0.3, -0.2}, -0.2}};
@@ -230,6 +245,16 @@ TEST(RaySteps, WithoutSenseAreRefused) {
     bad.steps->counted_from = from;
     EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "counted from " << from;
   }
+  bad = good;
+  bad.steps->first = 1;
+  bad.steps->at_least_one = true;
+  EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "not the whole texture";
+  bad.steps->divided = true;
+  EXPECT_NO_THROW(validate(texture.description, bad)) << "none lies beyond";
+  bad.steps->divided = false;
+  bad.region = {{0, 0, 0}, {1, 1, 1}};
+  EXPECT_NO_THROW(validate(texture.description, bad));
+  EXPECT_THROW(validate(repeating.description, bad), std::invalid_argument) << "a texture that repeats";
 }
 
 }  // namespace

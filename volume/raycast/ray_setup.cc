@@ -96,6 +96,7 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
       if (setup.steps->divided) {
         const V way = hn::Sub(exit, entry);
         parts = hn::Floor(hn::Add(hn::Div(way, part), hn::Set(d, setup.steps->rounding)));
+        if (setup.steps->at_least_one) parts = hn::IfThenElse(hn::Le(entry, exit), hn::Max(parts, one), parts);
         meets = hn::And(meets, hn::Ge(parts, one));
         part = hn::Div(way, parts);
       }
@@ -124,6 +125,7 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
         last = hn::Min(last, hn::Floor(to_depth));
         end = hn::Min(end, to_depth);
       }
+      if (setup.steps->at_least_one) last = hn::IfThenElse(hn::Le(entry, exit), hn::Max(last, zero), last);
       low = hn::Add(entry, hn::Mul(hn::Add(offset, first), part));
     } else {
       low = first;

@@ -133,16 +133,17 @@ void validate_bound(const VolumeDescription& volume, const RenderRequest& reques
 
 /// Samples beyond the region must not lie in texels that only others hold, and not in segments.
 void validate_count(const VolumeDescription& volume, const RenderRequest& request) {
-  if (!request.steps || !request.steps->counted_from) return;
+  const auto& steps = request.steps;
+  if (!steps || (!steps->counted_from && (!steps->at_least_one || steps->divided))) return;
   constexpr double most_beyond = 16;
-  const double beyond = request.steps->beyond_end();
+  const double beyond = steps->beyond_end();
   if (beyond > most_beyond) refuse("samples lie {} steps beyond the end of their ray", beyond);
   if (beyond > 0 && std::ranges::find(volume.wrap, Wrap::repeat) != volume.wrap.end())
     refuse("samples lie beyond the end of their ray in a texture that repeats");
   if (!is_all_of_texture(request.region, volume.size))
-    refuse("samples counted before they are taken, in a region that is not the whole texture");
+    refuse("samples that may lie beyond the end of their ray, in a region that is not the whole texture");
   if (!request.clip_planes.empty() || has_segments(request))
-    refuse("samples counted before they are taken know neither clip planes nor segments");
+    refuse("samples that may lie beyond the end of their ray know neither clip planes nor segments");
 }
 
 void validate_slice_segment(const VolumeDescription& volume, const RenderRequest& request) {

@@ -292,8 +292,9 @@ void take_steps(const RenderRequest& request, const Vec4& near, const Vec4& far,
   const double first = rule.first + offset;
   const double uncounted = rule.counted_from ? first - *rule.counted_from : 0;
   int count = int(std::floor(steps - (first - uncounted))) + 1;
+  if (rule.at_least_one) count = std::max(count, 1);
   if (rule.divided) {
-    count = int(std::floor(steps + rule.rounding));
+    count = std::max(int(std::floor(steps + rule.rounding)), rule.at_least_one ? 1 : 0);
     if (count < 1) return;
     part = (leave - enter) / count;
   }
@@ -308,8 +309,10 @@ void take_steps(const RenderRequest& request, const Vec4& near, const Vec4& far,
     };
     const double depth_s = s - rule.past_depth * part;
     const double counted_s = s - uncounted * part;
-    if (s < 0 || counted_s > 1 || counted_s > leave || cut_away(request, point(s))) continue;
-    if (visible(depth_s) && visible(enter)) sample_at(point(s), point(s));
+    const bool anyway = rule.at_least_one && i == 0;
+    const bool beyond_end = counted_s > 1 || counted_s > leave;
+    if (s < 0 || (beyond_end && !anyway) || cut_away(request, point(s))) continue;
+    if ((anyway || visible(depth_s)) && visible(enter)) sample_at(point(s), point(s));
   }
 }
 

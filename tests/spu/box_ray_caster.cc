@@ -27,7 +27,8 @@ constexpr const char* fragment_source =
     // `gradients` is never set, and so is on the unit of `field`, as in programs that keep lighting for later.
     "uniform sampler3D field, gradients; uniform sampler1D table; uniform sampler2D opaque, noise;\n"
     "uniform mat4 inverse_camera; uniform vec4 eye; uniform vec3 extent; uniform float one_step;\n"
-    "uniform int composition; uniform bool straight, divided, lit, whole_rays, jittered, noisy, reads_depth;\n"
+    "uniform int composition; uniform bool straight, divided, lit, whole_rays, jittered, noisy, at_least_one, "
+    "reads_depth;\n"
     "uniform vec2 window; uniform float past_planes; uniform bool discards, over_background;\n"
     "uniform vec3 background; uniform vec4 shown; uniform float shown_radius, ends_at;\n"
     "uniform bool way_from_eye;\n"
@@ -105,10 +106,13 @@ constexpr const char* fragment_source =
     "    count = floor(min(shown, steps - begin));\n"
     "  }\n"
     "  vec3 from = place + begin * step;\n"
-    "  if (divided) { count = floor(steps + 0.5); step *= steps / count; first = 0.0; }\n"
+    "  if (divided) {\n"
+    "    count = max(floor(steps + 0.5), at_least_one ? 1.0 : 0.0); step *= steps / count; first = 0.0;\n"
+    "  }\n"
     "  if (jittered) first = fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5) + 0.5;\n"
     "  if (noisy) first = texture(noise, gl_FragCoord.xy / vec2(textureSize(noise, 0))).r;\n"
     "  count = jittered || noisy ? floor(steps - first) + 1.0 : count;\n"
+    "  if (at_least_one) count = max(count, 1.0);\n"
     "  if (discards && count < 1.0) discard;\n"
     "  if (reads_depth) {\n"
     "    vec4 end = vec4(2.0 * gl_FragCoord.xy / window - 1.0, 0.0, 1.0);\n"
@@ -398,7 +402,7 @@ void BoxRayCaster::set_up(GlApplication& app) {
   const Blob blob;
   std::vector<std::uint8_t> texels = blob.texels();
   // Around the blob there is nothing, which would be the minimum of all rays.
-  if (style.composition == MarchStyle::Composition::minimum) {
+  if (style.composition == MarchStyle::Composition::minimum || style.dense_rim) {
     for (std::uint8_t& texel : texels) texel = std::uint8_t(255 - texel);
   }
   gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -476,6 +480,7 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
   gl().Uniform1f(at("ambient"), style.ambient);
   gl().Uniform1i(at("whole_rays"), style.whole_rays ? 1 : 0);
   gl().Uniform1i(at("jittered"), style.jittered ? 1 : 0);
+  gl().Uniform1i(at("at_least_one"), style.at_least_one ? 1 : 0);
   gl().Uniform1i(at("discards"), style.discards ? 1 : 0);
   gl().Uniform4fv(at("shown"), 1, style.shown.data());
   gl().Uniform1f(at("shown_radius"), style.shown_radius);

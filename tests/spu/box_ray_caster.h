@@ -47,6 +47,8 @@ struct MarchStyle {
   bool noisy = false;  ///< every ray starts later by the number of a texture that repeats over the window
   /// The noise is filtered by a sampler object: the texture's own filter asks for levels that it does not have.
   bool noise_sampler = false;
+  bool dense_rim = false;                ///< the values are the largest at the faces of the box
+  bool at_least_one = false;             ///< rays that are too short have a sample, too
   bool reads_depth = false;              ///< rays end at the depth of a texture
   std::array<float, 3> extent{1, 1, 1};  ///< of the box, in the unit of `step`
   float step = 0.02F;

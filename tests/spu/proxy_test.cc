@@ -39,6 +39,8 @@ std::vector<Kind> kinds() {
        {.premultiplied = false, .divided = true, .extent = stretched}},
       {"over, parallel projection", {.parallel = true, .extent = of_cubes}},
       {"over, noise at the beginning of rays", {.noisy = true, .extent = stretched}},
+      {"maximum, noise at the beginning of rays",
+       {.composition = Composition::maximum, .noisy = true, .extent = stretched}},
       {"over, light from the eye", {.lit_from_eye = true, .extent = stretched}},
       {"over, light from the eye, gradients over a texel, straight colours",
        {.premultiplied = false,
@@ -295,6 +297,31 @@ TEST(Proxies, NoiseAtTheBeginningOfRaysIsThatOfTheApplication) {
   }
 }
 
+/// As while somebody turns a volume in ParaView, whose steps are ten texels long then: at the silhouette of the
+/// box, rays are shorter in many pixels.
+TEST(Proxies, ShortRaysHaveASampleWhereTheProgramTakesOne) {
+  for (const bool divided : {false, true}) {
+    std::vector<std::vector<float>> images;
+    for (const bool at_least_one : {false, true}) {
+      MarchStyle style{.divided = divided, .noisy = !divided, .step = 0.08F};
+      style.dense_rim = true;
+      style.at_least_one = at_least_one;
+      RayCasterScene scene(style);
+      if (!scene.app) GTEST_SKIP() << "no EGL context here";
+      scene.frame(true, 30);
+      scene.caster.style.step = 0.2F;
+      const auto under = scene.frame(true, 37);
+      const auto bare = scene.frame(false, 37);
+      std::printf("%s, %s: %.1f dB\n", divided ? "divided" : "noise", at_least_one ? "one at least" : "none",
+                  psnr(under, bare));
+      EXPECT_GE(psnr(under, bare), 42);
+      EXPECT_EQ(scene.app->substituted(), 2U) << scene.app->last_reason();
+      images.push_back(bare);
+    }
+    EXPECT_LT(psnr(images[0], images[1]), 40) << "one sample changes nothing: the test tests nothing";
+  }
+}
+
 TEST(Proxies, NoiseIsReadThroughItsSamplerObject) {
   RayCasterScene scene(MarchStyle{.noisy = true, .noise_sampler = true, .step = 0.08F});
   if (!scene.app) GTEST_SKIP() << "no EGL context here";
@@ -537,7 +564,7 @@ TEST(StepFit, FindsTheMetricAndWhereTheFirstSampleLies) {
         const volume::Vec3 way{uniform(random), uniform(random), uniform(random)};
         rays.push_back({way, samples_of_length(truth, steps_of_way(truth, way))});
       }
-      const auto fits = fit_steps(rays, axes_in_texels(texels));
+      const auto fits = fit_steps(rays, std::vector{axes_in_texels(texels)});
       ASSERT_EQ(fits.size(), 1U) << metric[4] << ", first " << first;
       EXPECT_LE(fits[0].unexplained, most_unexplained);
       const volume::RaySteps rule = rules_of(fits[0]).front();
@@ -546,7 +573,7 @@ TEST(StepFit, FindsTheMetricAndWhereTheFirstSampleLies) {
         EXPECT_NEAR(steps_of_way(rule, ray.way), steps_of_way(truth, ray.way), 0.2);
       // Rays that begin anywhere within two steps are another matter.
       for (CountedRay& ray : rays) ray.samples += std::floor(2 * uniform(random));
-      const auto jittered = fit_steps(rays, axes_in_texels(texels));
+      const auto jittered = fit_steps(rays, std::vector{axes_in_texels(texels)});
       ASSERT_EQ(jittered.size(), 1U);
       EXPECT_GT(jittered[0].unexplained, 0.05);
     }
@@ -563,7 +590,7 @@ TEST(StepFit, RaysOfNearlyOneDirectionTellTheStepInTexels) {
     const volume::Vec3 way{0.8 * length, 0.5 * length, -0.3 * length};
     rays.push_back({way, samples_of_length(truth, steps_of_way(truth, way))});
   }
-  const auto fits = fit_steps(rays, {100, 80, 60});
+  const auto fits = fit_steps(rays, std::vector{volume::Vec3{100, 80, 60}});
   ASSERT_GE(fits.size(), 1U);
   const auto rule = rules_of(fits.front()).front();
   EXPECT_NEAR(steps_of_way(rule, {0, 1, 0}), 96, 0.5);

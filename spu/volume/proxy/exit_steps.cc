@@ -18,7 +18,7 @@ constexpr double exit_rounding = 1e-3;
 }  // namespace
 
 bool may_be_counted_from_exit(const volume::RaySteps& steps) {
-  return !steps.divided && !steps.counted_from && steps.first < 1 - 2 * exit_rounding;
+  return !steps.divided && !steps.counted_from && !steps.at_least_one && steps.first < 1 - 2 * exit_rounding;
 }
 
 volume::RaySteps counted_from_exit(const volume::RaySteps& steps, const RaysThroughBox& rays,

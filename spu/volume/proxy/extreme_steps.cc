@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "spu/volume/proxy/axis_lengths.h"
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/step_density.h"
 #include "spu/volume/proxy/step_fit.h"
+#include "spu/volume/proxy/step_spaces.h"
 #include "volume/matrix.h"
 
 namespace understudy::spu {
@@ -100,13 +100,6 @@ std::optional<TellingStretch> TellingStretch::of(const volume::TransferFunction&
   return best;
 }
 
-/// Where the first and the last sample of a ray lie, as parts of its way.
-struct RayEnds {
-  volume::Vec3 way{};
-  double first = 0;
-  double last = 1;
-};
-
 /// Of the rays in some rows that go far enough along `axis`.
 void add_ends(FieldProbe& probe, const TellingStretch& stretch, const RaysThroughBox& rays, std::size_t axis,
               bool premultiplied_already, std::vector<RayEnds>& ends) {
@@ -129,25 +122,9 @@ void add_ends(FieldProbe& probe, const TellingStretch& stretch, const RaysThroug
       if (!one || !other) continue;
       const double a = (*one - through->entry[axis]) / way[axis];
       const double b = (1 - *other - through->entry[axis]) / way[axis];
-      ends.push_back({way, std::min(a, b), std::max(a, b)});
+      ends.push_back({way, std::min(a, b), std::max(a, b), probe.left() + column, probe.bottom() + row});
     }
   }
-}
-
-/// Whether the samples of nearly all rays lie where `steps` says.
-bool lie_as_said(const std::vector<RayEnds>& ends, const volume::RaySteps& steps) {
-  constexpr double colours_of_8_bits = 0.3;  // of a step
-  constexpr double rounding = 0.05;
-  constexpr double most_elsewhere = 0.05;
-  const auto elsewhere = std::ranges::count_if(ends, [&](const RayEnds& ray) {
-    const double length = steps_of_way(steps, ray.way);
-    if (!(std::abs(ray.first * length - steps.first) <= colours_of_8_bits)) return true;
-    return std::ranges::none_of(std::array{0.0, -rounding, rounding}, [&](double nudge) {
-      const double last = steps.first + samples_of_length(steps, length + nudge) - 1;
-      return std::abs(ray.last * length - last) <= colours_of_8_bits;
-    });
-  });
-  return double(elsewhere) <= most_elsewhere * double(ends.size());
 }
 
 /// Steps of one length where the texture's axes are `axes` long: about so many to a unit as the ways tell, and
@@ -163,25 +140,32 @@ std::optional<volume::RaySteps> steps_in(const std::vector<RayEnds>& ends, const
   std::vector<CountedRay> counted;
   for (std::size_t i = 0; i < ends.size(); ++i)
     counted.push_back({ends[i].way, std::round(*density * ways[i].sampled) + 1});
-  for (const StepFit& fit : fit_steps(counted, axes)) {
+  for (const StepFit& fit : fit_steps(counted, {&axes, 1})) {
     const volume::RaySteps steps = rules_of(fit).front();
-    if (fit.unexplained <= most_unexplained && lie_as_said(ends, steps)) return steps;
+    if (fit.unexplained <= most_unexplained && lie_on(steps, ends)) return steps;
   }
   return std::nullopt;
 }
 
-/// Whether both give every way nearly as many steps.
-bool alike(const volume::RaySteps& one, const volume::RaySteps& other) {
-  constexpr double same = 1e-3;
-  const double most = same * std::max({one.metric[0], one.metric[4], one.metric[8]});
-  return one.first == other.first && std::ranges::equal(one.metric, other.metric, [&](double a, double b) {
-           return std::abs(a - b) <= most;
-         });
+}  // namespace
+
+bool lie_on(const volume::RaySteps& steps, std::span<const RayEnds> ends) {
+  constexpr double colours_of_8_bits = 0.3;  // of a step
+  constexpr double rounding = 0.05;
+  constexpr double most_elsewhere = 0.05;
+  const auto elsewhere = std::ranges::count_if(ends, [&](const RayEnds& ray) {
+    const double length = steps_of_way(steps, ray.way);
+    if (!(std::abs(ray.first * length - steps.first) <= colours_of_8_bits)) return true;
+    return std::ranges::none_of(std::array{0.0, -rounding, rounding}, [&](double nudge) {
+      const double last = steps.first + samples_of_length(steps, length + nudge) - 1;
+      return std::abs(ray.last * length - last) <= colours_of_8_bits;
+    });
+  });
+  return double(elsewhere) <= most_elsewhere * double(ends.size());
 }
 
-/// Of some rays all over the box; none where colours do not tell enough of them.
-std::vector<RayEnds> seen_ends(const MarchContext& measured, FieldProbe& probe,
-                               const volume::TransferFunction& table, const ProxyBox& box) {
+std::vector<RayEnds> ends_of_rays(const MarchContext& measured, FieldProbe& probe,
+                                  const volume::TransferFunction& table, const ProxyBox& box) {
   constexpr std::size_t most_rays = 512;
   const auto stretch = TellingStretch::of(table);
   if (!stretch || !box.cuts.empty()) return {};
@@ -196,32 +180,18 @@ std::vector<RayEnds> seen_ends(const MarchContext& measured, FieldProbe& probe,
   return ends;
 }
 
-}  // namespace
-
-std::vector<volume::RaySteps> extreme_steps(const MarchContext& measured, FieldProbe& probe,
-                                            const volume::TransferFunction& table, const ProxyBox& box) {
-  const std::vector<RayEnds> ends = seen_ends(measured, probe, table, box);
-  if (ends.empty()) return {};
-  // Rays of nearly one direction may lie on steps of one length in all of these.
-  std::vector<volume::Vec3> spaces{axes_in_texels(measured.texture.size)};
-  if (const auto lengths = axis_lengths(box.camera.texture_to_clip, probe.width(), probe.height()))
-    spaces.push_back(*lengths);
-  spaces.push_back({1, 1, 1});
+std::vector<volume::RaySteps> steps_of(const std::vector<RayEnds>& ends, const MarchContext& measured,
+                                       const FieldProbe& probe, const ProxyBox& box) {
   std::vector<volume::RaySteps> found;
-  for (const volume::Vec3& axes : spaces) {
+  if (ends.empty()) return found;
+  for (const volume::Vec3& axes : step_spaces(measured.texture.size, box.camera.texture_to_clip, probe)) {
     const auto steps = steps_in(ends, axes);
-    if (steps && std::ranges::none_of(found, [&](const auto& other) { return alike(other, *steps); }))
+    if (steps && std::ranges::none_of(found, [&](const volume::RaySteps& other) {
+          return other.first == steps->first && alike(other.metric, steps->metric);
+        }))
       found.push_back(*steps);
   }
   return found;
-}
-
-std::optional<bool> extremes_lie_on(const volume::RaySteps& steps, const MarchContext& measured,
-                                    FieldProbe& probe, const volume::TransferFunction& table,
-                                    const ProxyBox& box) {
-  const std::vector<RayEnds> ends = seen_ends(measured, probe, table, box);
-  if (ends.empty()) return std::nullopt;
-  return lie_as_said(ends, steps);
 }
 
 }  // namespace understudy::spu

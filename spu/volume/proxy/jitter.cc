@@ -42,20 +42,6 @@ std::optional<Tile> tile_of(const DispatchTable& gl, const SampledTexture& textu
   return tile;
 }
 
-/// The texture's own numbers, whatever is shown in its place.
-std::optional<volume::RayOffsets> numbers_of(const GlContext& context, const SampledTexture& texture) {
-  const DispatchTable& gl = *context.gl;
-  if (texture.target != GL_TEXTURE_2D) return std::nullopt;
-  SavedState saved(context);
-  saved.borrow_texture(GL_TEXTURE_2D, texture.unit);
-  gl.BindTexture(GL_TEXTURE_2D, texture.texture);
-  const auto tile = tile_of(gl, texture);
-  if (!tile) return std::nullopt;
-  volume::RayOffsets numbers{tile->width, tile->height, std::vector<float>(tile->texels())};
-  gl.GetTexImage(GL_TEXTURE_2D, 0, GL_RED, GL_FLOAT, numbers.steps.data());
-  return numbers;
-}
-
 volume::RayOffsets scaled(volume::RayOffsets numbers, const Jitter& jitter) {
   for (float& number : numbers.steps) number = float(number * jitter.steps_per_unit);
   return numbers;
@@ -95,14 +81,15 @@ std::vector<CountedRay> counted_under(FieldProbe& probe, const SampledTexture& t
 /// What `texture` does to the rays that it moves; `own` were counted under its own numbers.
 std::optional<JitterFinding> jitter_by(const GlContext& context, FieldProbe& probe,
                                        const SampledTexture& texture, const RayCounting& count,
-                                       const std::vector<CountedRay>& own, const std::array<int, 3>& size) {
+                                       const std::vector<CountedRay>& own,
+                                       std::span<const volume::Vec3> spaces) {
   constexpr double rounding = 0.6;      // half a step, and what the fit and the texture's own precision leave
   constexpr double fewest_samples = 4;  // some programs take one where there is room for none
   const auto tile = tile_of(*context.gl, texture);
   if (!tile) return std::nullopt;
   volume::RayOffsets shown{tile->width, tile->height, std::vector<float>(tile->texels(), 0.0F)};
   std::vector<CountedRay> zeros = counted_under(probe, texture, shown, count);
-  const auto fits = fit_steps(zeros, axes_in_texels(size));
+  const auto fits = fit_steps(zeros, spaces);
   const bool alike = !fits.empty() && std::all_of(fits.begin(), fits.end(), [](const StepFit& fit) {
     return fit.unexplained <= most_unexplained;
   });
@@ -131,7 +118,7 @@ std::optional<JitterFinding> jitter_by(const GlContext& context, FieldProbe& pro
   });
   if (by_another_texel > most_strayed) return std::nullopt;
 
-  const auto numbers = numbers_of(context, texture);
+  const auto numbers = noise_in(context, texture);
   if (!numbers) return std::nullopt;
   const Counts counted(own);
   const StepFit& fit = fits.front();
@@ -175,7 +162,7 @@ bool same_rays(const std::vector<SplitRays>& a, const std::vector<SplitRays>& b)
 std::optional<Jitter> moving_jitter_by(const GlContext& context, FieldProbe& probe,
                                        const SampledTexture& texture, const RaySplitting& split,
                                        const RaysThroughBox& rays, const std::vector<volume::RaySteps>& rules) {
-  const auto numbers = numbers_of(context, texture);
+  const auto numbers = noise_in(context, texture);
   if (!numbers) return std::nullopt;
   volume::RayOffsets shown = *numbers;
   const auto split_under = [&](const auto& texel) {
@@ -210,11 +197,24 @@ std::optional<Jitter> moving_jitter_by(const GlContext& context, FieldProbe& pro
 
 }  // namespace
 
+std::optional<volume::RayOffsets> noise_in(const GlContext& context, const SampledTexture& texture) {
+  const DispatchTable& gl = *context.gl;
+  if (texture.target != GL_TEXTURE_2D) return std::nullopt;
+  SavedState saved(context);
+  saved.borrow_texture(GL_TEXTURE_2D, texture.unit);
+  gl.BindTexture(GL_TEXTURE_2D, texture.texture);
+  const auto tile = tile_of(gl, texture);
+  if (!tile) return std::nullopt;
+  volume::RayOffsets numbers{tile->width, tile->height, std::vector<float>(tile->texels())};
+  gl.GetTexImage(GL_TEXTURE_2D, 0, GL_RED, GL_FLOAT, numbers.steps.data());
+  return numbers;
+}
+
 std::optional<JitterFinding> find_jitter(const GlContext& context, const Run& run, FieldProbe& probe,
                                          const RayCounting& count, const std::vector<CountedRay>& own,
-                                         const std::array<int, 3>& size) {
+                                         std::span<const volume::Vec3> spaces) {
   for (const SampledTexture& texture : run.pipeline().others) {
-    auto finding = jitter_by(context, probe, texture, count, own, size);
+    auto finding = jitter_by(context, probe, texture, count, own, spaces);
     if (finding && hold_still(run, probe, finding->jitter)) return finding;
     probe.show_own(texture);
   }
@@ -232,12 +232,15 @@ std::optional<Jitter> find_moving_jitter(const GlContext& context, const Run& ru
   return std::nullopt;
 }
 
-bool hold_still(const Run& run, FieldProbe& probe, const Jitter& jitter) {
+bool begin_rays_at(const Run& run, FieldProbe& probe, const Jitter& jitter, float number) {
   const SampledTexture* const texture = sampled_at(run, jitter.sampler_location);
   if (texture == nullptr || texture->target != GL_TEXTURE_2D) return false;
-  constexpr float zero = 0;
-  probe.show_instead(*texture, 1, 1, {&zero, 1});
+  probe.show_instead(*texture, 1, 1, {&number, 1});
   return true;
+}
+
+bool hold_still(const Run& run, FieldProbe& probe, const Jitter& jitter) {
+  return begin_rays_at(run, probe, jitter, 0);
 }
 
 bool show_own_noise(const Run& run, FieldProbe& probe, const Jitter& jitter) {
@@ -249,7 +252,7 @@ bool show_own_noise(const Run& run, FieldProbe& probe, const Jitter& jitter) {
 
 std::optional<volume::RayOffsets> ray_offsets(const GlContext& context, const Run& run, const Jitter& jitter) {
   const SampledTexture* const texture = sampled_at(run, jitter.sampler_location);
-  auto numbers = texture != nullptr ? numbers_of(context, *texture) : std::nullopt;
+  auto numbers = texture != nullptr ? noise_in(context, *texture) : std::nullopt;
   if (!numbers) return std::nullopt;
   return scaled(*std::move(numbers), jitter);
 }

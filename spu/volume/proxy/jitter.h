@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -18,6 +19,10 @@
 #include "volume/sampling.h"
 
 namespace understudy::spu {
+
+/// The texture's own numbers, whatever is shown in its place; none of textures that hold no noise: tables,
+/// depths and images.
+std::optional<volume::RayOffsets> noise_in(const GlContext& context, const SampledTexture& texture);
 
 /// Where a program reads by how much of a step a ray begins later: linear in the texel's number.
 struct Jitter {
@@ -35,10 +40,11 @@ struct JitterFinding {
 };
 
 /// The texture among those of `run` that moves the samples, where there is one; `own` was counted under its own
-/// numbers. Afterwards `probe` shows zeros in its place.
+/// numbers, and steps may have one length in one of `spaces` (fit_steps). Afterwards `probe` shows zeros in its
+/// place.
 std::optional<JitterFinding> find_jitter(const GlContext& context, const Run& run, FieldProbe& probe,
                                          const RayCounting& count, const std::vector<CountedRay>& own,
-                                         const std::array<int, 3>& size);
+                                         std::span<const volume::Vec3> spaces);
 
 /// Rays through split fields, or none.
 using RaySplitting = std::function<std::vector<SplitRays>()>;
@@ -49,7 +55,11 @@ std::optional<Jitter> find_moving_jitter(const GlContext& context, const Run& ru
                                          const RaySplitting& split, const RaysThroughBox& rays,
                                          const std::vector<volume::RaySteps>& rules);
 
-/// Makes all rays of `probe` begin alike, at the jitter's zero. False when the program has no such texture.
+/// Makes all rays of `probe` begin alike, as a texture of one number would have them. False when the program
+/// has no such texture.
+bool begin_rays_at(const Run& run, FieldProbe& probe, const Jitter& jitter, float number);
+
+/// The same at the jitter's zero.
 bool hold_still(const Run& run, FieldProbe& probe, const Jitter& jitter);
 
 /// They begin by the program's own numbers again. False when it has no such texture.

@@ -8,8 +8,10 @@
 #include "spu/volume/classification/sample_rounding.h"
 #include "spu/volume/classification/table_lookup.h"
 #include "spu/volume/proxy/exit_steps.h"
+#include "spu/volume/proxy/extreme_jitter.h"
 #include "spu/volume/proxy/extreme_steps.h"
 #include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/first_sample.h"
 #include "spu/volume/proxy/gradient_opacity.h"
 #include "spu/volume/proxy/headlight.h"
 #include "spu/volume/proxy/march_table.h"
@@ -20,6 +22,7 @@
 #include "spu/volume/proxy/sample_places.h"
 #include "spu/volume/proxy/shader_background.h"
 #include "spu/volume/proxy/step_fit.h"
+#include "spu/volume/proxy/step_spaces.h"
 #include "volume/cell_lattice.h"
 #include "volume/matrix.h"
 #include "volume/request.h"
@@ -83,6 +86,8 @@ class MarchMeasurement {
   void take_rules(const std::vector<StepFit>& fits);
   std::optional<Refusal> take_offsets();
   std::optional<Refusal> find_places();
+  std::optional<Refusal> find_places_of_extremes();
+  void find_first_samples();
   /// The part of rays whose samples are not where a rule puts them, counted from where rays enter or leave the
   /// box; null where it cannot be counted so.
   std::optional<double> misplaced(const volume::RaySteps& rule, bool from_exit) const;
@@ -92,8 +97,8 @@ class MarchMeasurement {
   /// Whether nodes can be asked for samples that are counted ahead, in such a box.
   bool may_count_ahead(const volume::RaySteps& rule, const volume::Box& region) const;
   void add_lit_marches(March march, std::vector<March>& marches) const;
-  void add_marches(const CoordinateSpace& space, const volume::RaySteps& rule, bool seen,
-                   std::vector<March>& marches) const;
+  void add_marches(const CoordinateSpace& space, const volume::Box& region, const volume::RaySteps& rule,
+                   bool seen, std::vector<March>& marches) const;
 
   const MarchContext& measured_;
   const ProxyBox& box_;
@@ -196,10 +201,11 @@ std::optional<Refusal> MarchMeasurement::find_steps() {
   const auto counted = count();
   if (const auto* reason = std::get_if<std::string>(&counted)) return Refusal{*reason};
   const auto& all = std::get<std::vector<CountedRay>>(counted);
-  auto fits = fit_steps(all, axes_in_texels(size));
+  const auto spaces = step_spaces(size, box_.camera.texture_to_clip, probe_);
+  auto fits = fit_steps(all, spaces);
   if (fits.empty()) return "too few rays of several samples are in view to tell the step";
   if (fits.front().unexplained > most_unexplained) {
-    auto finding = find_jitter(measured_.context, measured_.run, probe_, count, all, size);
+    auto finding = find_jitter(measured_.context, measured_.run, probe_, count, all, spaces);
     if (!finding) return samples_lie_elsewhere;
     march_.jitter = finding->jitter;
     fits = std::move(finding->fits);
@@ -212,7 +218,8 @@ std::optional<Refusal> MarchMeasurement::find_steps_of_mean() {
   for (const Mean mean : {Mean::of_colours, Mean::of_values}) {
     if (mean == Mean::of_colours && march_.mean != mean) continue;
     const auto counted = counted_by_means(probe_, box_, mean, values_, through_);
-    const auto fits = fit_steps(counted, axes_in_texels(measured_.texture.size));
+    const auto fits =
+        fit_steps(counted, step_spaces(measured_.texture.size, box_.camera.texture_to_clip, probe_));
     if (fits.empty() || fits.front().unexplained > most_unexplained) continue;
     march_.mean = mean;
     take_rules(fits);
@@ -261,7 +268,16 @@ std::optional<Refusal> MarchMeasurement::measure_samples() {
     return "a value that may hide what lies behind it has the colour of the shader's background";
   march_.opacity_limit = opacity_limit(march_, rules_.front(), probe_, rays_);
   if (auto refusal = take_offsets()) return refusal;
-  return find_places();
+  if (auto refusal = find_places()) return refusal;
+  find_first_samples();
+  return std::nullopt;
+}
+
+void MarchMeasurement::find_first_samples() {
+  // Where planes cut the box, and where the eye is inside, samples may not lie beyond the end of their ray.
+  if (march_.from_exit || measured_.clipped || !box_.cuts.empty()) return;
+  for (volume::RaySteps& rule : rules_)
+    rule.at_least_one = takes_first_sample_anyway(measured_, probe_, rays_, march_, rule, values_);
 }
 
 std::optional<Refusal> MarchMeasurement::measure_light() {
@@ -294,13 +310,22 @@ const volume::RaySteps& MarchMeasurement::likeliest_rule() const {
       rules_, {}, [&](const volume::RaySteps& rule) { return misplaced(rule, march_.from_exit).value_or(1); });
 }
 
-std::optional<Refusal> MarchMeasurement::find_places() {
-  if (march_.extreme) {
-    const auto steps = extreme_steps(measured_, probe_, march_.table, box_);
-    extremes_seen_ = steps.size();
-    rules_.insert(rules_.begin(), steps.begin(), steps.end());
-    return std::nullopt;
+std::optional<Refusal> MarchMeasurement::find_places_of_extremes() {
+  auto steps = steps_of(ends_of_rays(measured_, probe_, march_.table, box_), measured_, probe_, box_);
+  if (steps.empty()) {
+    if (auto found = find_extreme_jitter(measured_, probe_, march_.table, box_)) {
+      march_.jitter = found->jitter;
+      steps = std::move(found->steps);
+      rules_.clear();
+    }
   }
+  extremes_seen_ = steps.size();
+  rules_.insert(rules_.begin(), steps.begin(), steps.end());
+  return take_offsets();
+}
+
+std::optional<Refusal> MarchMeasurement::find_places() {
+  if (march_.extreme) return find_places_of_extremes();
   // Where the eye is inside, rays of all directions begin at one place.
   if (march_.mean || !box_.cuts.empty()) return std::nullopt;
   if (march_.jitter && !show_own_noise(measured_.run, probe_, *march_.jitter)) return std::nullopt;
@@ -329,11 +354,12 @@ void MarchMeasurement::add_lit_marches(March march, std::vector<March>& marches)
   }
 }
 
-void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::RaySteps& rule, bool seen,
-                                   std::vector<March>& marches) const {
+void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::Box& region,
+                                   const volume::RaySteps& rule, bool seen, std::vector<March>& marches) const {
   March march = march_;
   march.space = space;
   march.steps = rule;
+  march.steps.at_least_one = rule.at_least_one && may_count_ahead(rule, region);
   march.steps_seen = seen;
   // The step that reaches the opaque geometry is usually taken before it is noticed.
   march.steps.past_depth = measured_.ends_at_geometry ? 1 : 0;
@@ -375,7 +401,8 @@ MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& space
       if (!misplaced && spaces[i].of_whole_box) continue;
       if (rules_[r].counted_from && !march_.jitter && !(misplaced && *misplaced <= misplaced_by_rounding))
         continue;
-      if (misplaced.value_or(0) <= most_misplaced) add_marches(spaces[i], rules_[r], seen, marches);
+      if (misplaced.value_or(0) <= most_misplaced)
+        add_marches(spaces[i], boxes[i]->region, rules_[r], seen, marches);
     }
   }
   if (marches.empty()) return samples_lie_elsewhere;

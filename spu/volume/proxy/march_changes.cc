@@ -21,6 +21,7 @@
 #include "spu/volume/proxy/sample_places.h"
 #include "spu/volume/proxy/shader_background.h"
 #include "spu/volume/proxy/step_fit.h"
+#include "volume/matrix.h"
 
 namespace understudy::spu {
 
@@ -32,7 +33,14 @@ namespace {
 std::optional<bool> samples_lie_as_said(const MarchContext& measured, const March& march, const ProxyBox& box) {
   FieldProbe probe(measured);
   if (!probe.complete()) return std::nullopt;
-  if (march.extreme) return extremes_lie_on(march.steps, measured, probe, march.table, box);
+  if (march.extreme) {
+    if (!held_still(measured, probe, march)) return false;
+    volume::RaySteps steps = march.steps;
+    steps.offsets.reset();
+    const std::vector<RayEnds> ends = ends_of_rays(measured, probe, march.table, box);
+    if (ends.empty()) return std::nullopt;
+    return lie_on(steps, ends);
+  }
   const std::vector<float> values = values_over(measured.range);
   const auto middle = RaysThroughBox(box.camera.texture_to_clip, box.region, box.cuts).middle();
   const auto counted =
@@ -95,8 +103,12 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
     return "the steps of rays are others where the eye is inside";
   const auto counted = counted_rays(measured, probe, rays, march);
   if (const auto* reason = std::get_if<std::string>(&counted)) return *reason;
-  const volume::Vec3 axes = axes_in_texels(measured.texture.size);
-  for (const StepFit& fit : fit_steps(std::get<std::vector<CountedRay>>(counted), axes)) {
+  const auto& metric = march.steps.metric;
+  const std::array spaces{axes_in_texels(measured.texture.size),
+                          volume::Vec3{volume::length({metric[0], metric[3], metric[6]}),
+                                       volume::length({metric[1], metric[4], metric[7]}),
+                                       volume::length({metric[2], metric[5], metric[8]})}};
+  for (const StepFit& fit : fit_steps(std::get<std::vector<CountedRay>>(counted), spaces)) {
     const volume::RaySteps rule = rules_of(fit).front();
     if (fit.unexplained > most_unexplained || rule.first != counted_from(march.steps)) continue;
     changed.steps.metric = rule.metric;

@@ -516,6 +516,9 @@ ImageRequest RayCasterStage::ask(const Draw& draw, const March& march, const Pro
   const bool cut = !image.ray_ends.empty() || !image.parts.front().empty();
   if (cut && march.steps.counted_from)
     throw Refusal{"planes cut a ray caster's box whose samples are counted before they are taken"};
+  // There one sample of the rim is lost.
+  if (cut || !volume::is_all_of_texture(image.request.region, draw.measured().texture.size))
+    image.request.steps->at_least_one = false;
   // One number a pixel travels to the nodes.
   const std::size_t pixels = volume::footprint(image.request, image.request.region).pixels();
   const auto refuse_more = [&](const char* reason) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <optional>
 
@@ -168,16 +169,31 @@ std::optional<StepFit> fit_one_length(std::span<const CountedRay> rays, const Ve
   return finished(rays, g, offset, rounding);
 }
 
-std::optional<StepFit> fit_axes(std::span<const CountedRay> rays, const Vec3&, double offset) {
-  return fit_products<3>(rays, offset);
-}
-std::optional<StepFit> fit_any(std::span<const CountedRay> rays, const Vec3&, double offset) {
-  return fit_products<6>(rays, offset);
+using Fitting = std::optional<StepFit> (*)(std::span<const CountedRay>, double);
+
+/// Adds those that explain the counts, and remembers the best one.
+void add_fits(const std::function<std::optional<StepFit>(double)>& fit, std::vector<StepFit>& good,
+              std::optional<StepFit>& best) {
+  for (const double offset : {-0.5, 0.0, 0.5}) {
+    const auto found = fit(offset);
+    if (!found) continue;
+    const bool known = std::ranges::any_of(good, [&](const StepFit& other) {
+      return other.offset == offset && alike(other.metric, found->metric);
+    });
+    if (found->unexplained <= most_unexplained && !known) good.push_back(*found);
+    if (!best || found->unexplained < best->unexplained) best = found;
+  }
 }
 
 }  // namespace
 
-std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, const Vec3& axes) {
+bool alike(const std::array<double, 9>& one, const std::array<double, 9>& other) {
+  constexpr double same = 1e-3;
+  const double most = same * std::max({one[0], one[4], one[8]});
+  return std::ranges::equal(one, other, [&](double a, double b) { return std::abs(a - b) <= most; });
+}
+
+std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, std::span<const Vec3> spaces) {
   constexpr std::size_t fewest = 64;
   constexpr double shortest = 2;  // samples: some programs take one where there is room for none
   std::vector<CountedRay> counted;
@@ -185,16 +201,13 @@ std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, const Vec3& axe
                [](const CountedRay& ray) { return ray.samples >= shortest; });
   if (counted.size() < fewest) return {};
   std::optional<StepFit> best;
-  for (const auto& fit : {fit_one_length, fit_axes, fit_any}) {
-    std::vector<StepFit> good;
-    for (const double offset : {-0.5, 0.0, 0.5}) {
-      const auto found = fit(counted, axes, offset);
-      if (!found) continue;
-      if (found->unexplained <= most_unexplained) good.push_back(*found);
-      if (!best || found->unexplained < best->unexplained) best = found;
-    }
-    if (!good.empty()) return good;
+  std::vector<StepFit> good;
+  for (const Vec3& axes : spaces)
+    add_fits([&](double offset) { return fit_one_length(counted, axes, offset); }, good, best);
+  for (const Fitting fit : {&fit_products<3>, &fit_products<6>}) {
+    if (good.empty()) add_fits([&](double offset) { return fit(counted, offset); }, good, best);
   }
+  if (!good.empty()) return good;
   if (!best) return {};
   return {*best};
 }
@@ -286,7 +299,7 @@ double steps_of_way(const volume::RaySteps& steps, const Vec3& way) {
 double samples_of_length(const volume::RaySteps& steps, double length) {
   const double count =
       steps.divided ? std::floor(length + steps.rounding) : std::floor(length - counted_from(steps)) + 1;
-  return std::max(count, 0.0);
+  return std::max(count, steps.at_least_one ? 1.0 : 0.0);
 }
 
 std::vector<double> places_on_way(const volume::RaySteps& steps, const volume::Vec3& way) {

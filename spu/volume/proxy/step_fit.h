@@ -35,12 +35,15 @@ constexpr volume::Vec3 axes_in_texels(const std::array<int, 3>& size) {
 /// More unexplained rays than that are no rounding.
 constexpr double most_unexplained = 0.01;
 
-/// The simplest fits that explain the counts: steps of one length where the axes are `axes` long (in texels,
-/// say), or, where no such step does, of a length along each axis, or in any affine space. Rays of nearly one
-/// direction tell little of the other ones, and the simpler space is the one that holds when the camera has
-/// moved. Several when the counts leave open where the first sample lies; when nothing explains them, the best
-/// one; none without enough rays.
-std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, const volume::Vec3& axes);
+/// The simplest fits that explain the counts: steps of one length in a space where the axes are as long as one
+/// of `spaces` says (in texels, say), or, where no such step does, of a length along each axis, or in any
+/// affine space. Rays of nearly one direction tell little of the other ones, and the simpler space is the one
+/// that holds when the camera has moved. Several when the counts leave open where the first sample lies, or in
+/// which space steps have one length; when nothing explains them, the best one; none without enough rays.
+std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, std::span<const volume::Vec3> spaces);
+
+/// Whether both give every way nearly as many steps.
+bool alike(const std::array<double, 9>& one, const std::array<double, 9>& other);
 
 /// How many samples rays of the opacities 1 - q^n hold, for an unknown q: the counts n. Empty when the
 /// opacities are not of that kind.

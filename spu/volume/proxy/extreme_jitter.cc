@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spu/volume/proxy/extreme_jitter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <span>
+
+#include "spu/volume/proxy/extreme_steps.h"
+#include "spu/volume/proxy/step_fit.h"
+
+namespace understudy::spu {
+namespace {
+
+constexpr double most_elsewhere = 0.05;        ///< of rays, as extremes_lie_on
+constexpr double colours_of_8_bits = 0.3;      ///< of a step
+constexpr double shortest_displacement = 0.1;  ///< of a step: less cannot be told from rounding
+
+/// Those that have samples wherever they begin: some programs take one beyond the end of shorter ones.
+std::vector<RayEnds> long_ones(std::vector<RayEnds> ends, const volume::RaySteps& rule) {
+  constexpr double long_enough = 2.5;  // steps
+  std::erase_if(ends,
+                [&](const RayEnds& ray) { return steps_of_way(rule, ray.way) < rule.first + long_enough; });
+  return ends;
+}
+
+/// By how many steps later than `rule` says rays have their first sample: the median.
+double later_than(const volume::RaySteps& rule, std::span<const RayEnds> ends) {
+  std::vector<double> displacements;
+  displacements.reserve(ends.size());
+  for (const RayEnds& ray : ends) displacements.push_back(ray.first * steps_of_way(rule, ray.way) - rule.first);
+  if (displacements.empty()) return 0;
+  const auto middle = displacements.begin() + std::ptrdiff_t(displacements.size() / 2);
+  std::ranges::nth_element(displacements, middle);
+  return *middle;
+}
+
+/// Whether nearly all rays have it later by their pixel's number.
+bool begin_by(const volume::RayOffsets& numbers, const Jitter& jitter, const volume::RaySteps& rule,
+              std::span<const RayEnds> ends) {
+  const auto elsewhere = std::ranges::count_if(ends, [&](const RayEnds& ray) {
+    const double expected = rule.first + jitter.steps_per_unit * numbers.at(ray.x, ray.y);
+    return !(std::abs(ray.first * steps_of_way(rule, ray.way) - expected) <= colours_of_8_bits);
+  });
+  return !ends.empty() && double(elsewhere) <= most_elsewhere * double(ends.size());
+}
+
+/// Whether there are fewer samples where rays begin later, or as many, and they lie beyond the end.
+std::optional<bool> only_moves(const volume::RaySteps& rule, double displacement,
+                               std::span<const RayEnds> later) {
+  volume::RaySteps moved = rule;
+  moved.first += displacement;
+  if (lie_on(moved, later)) return false;
+  moved.counted_from = rule.first;
+  if (lie_on(moved, later)) return true;
+  return std::nullopt;
+}
+
+std::optional<ExtremeJitter> jitter_by(const MarchContext& measured, FieldProbe& probe,
+                                       const SampledTexture& texture, const volume::TransferFunction& table,
+                                       const ProxyBox& box) {
+  const auto numbers = noise_in(measured.context, texture);
+  if (!numbers) return std::nullopt;
+  volume::RayOffsets shown = *numbers;
+  const auto ends_under = [&](const auto& texel) {
+    std::ranges::generate(shown.steps, texel);
+    probe.show_instead(texture, shown.width, shown.height, shown.steps);
+    return ends_of_rays(measured, probe, table, box);
+  };
+  const std::vector<RayEnds> sooner = ends_under([] { return 0.0F; });
+  ExtremeJitter found{{texture.sampler_location, 0}, steps_of(sooner, measured, probe, box)};
+  if (found.steps.empty()) return std::nullopt;
+  const volume::RaySteps rule = found.steps.front();
+
+  const std::vector<RayEnds> later = long_ones(ends_under([] { return 1.0F; }), rule);
+  double& displacement = found.jitter.steps_per_unit;
+  displacement = later_than(rule, later);
+  if (std::abs(displacement - std::round(displacement)) < 0.02) displacement = std::round(displacement);
+  if (!(displacement > shortest_displacement)) return std::nullopt;
+  const auto moves_only = only_moves(rule, displacement, later);
+  if (!moves_only) return std::nullopt;
+  found.jitter.moves_only = *moves_only;
+
+  std::mt19937 random(1);
+  const std::vector<RayEnds> mixed = long_ones(ends_under([&] { return float(random() & 1U); }), rule);
+  if (!begin_by(shown, found.jitter, rule, mixed)) return std::nullopt;
+  probe.show_own(texture);
+  const std::vector<RayEnds> own = long_ones(ends_of_rays(measured, probe, table, box), rule);
+  if (!begin_by(*numbers, found.jitter, rule, own)) return std::nullopt;
+  return found;
+}
+
+}  // namespace
+
+std::optional<ExtremeJitter> find_extreme_jitter(const MarchContext& measured, FieldProbe& probe,
+                                                 const volume::TransferFunction& table, const ProxyBox& box) {
+  for (const SampledTexture& texture : measured.run.pipeline().others) {
+    auto found = jitter_by(measured, probe, texture, table, box);
+    probe.show_own(texture);
+    if (found) return found;
+  }
+  return std::nullopt;
+}
+
+}  // namespace understudy::spu

@@ -95,8 +95,8 @@ Rect footprint(const RenderRequest& request, const Box& box) {
 Rect footprint(const RenderRequest& request, const VolumeDescription& volume, const TexelBox& cells) {
   for (int axis = 0; axis < 3; ++axis)
     if (cells.low[axis] >= cells.high[axis]) return {};
-  // A ray's last sample may lie beyond the region, in cells that the ray does not cross.
-  if (request.steps && request.steps->beyond_end() > 0) return footprint(request, request.region);
+  // A ray's first or last sample may lie beyond the region, in cells that the ray does not cross.
+  if (request.steps && request.steps->any_beyond_end()) return footprint(request, request.region);
   return footprint(request, texture_box(volume, cells));
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -49,7 +50,8 @@ struct RaySteps {
     return std::all_of(metric.begin() + 3, metric.end(), [](double v) { return v == 0; });
   }
   double first = 0;
-  /// The ray is divided into n = floor(L + rounding) equal parts, n >= 1 (otherwise it has no samples); sample
+  /// The ray is divided into n = floor(L + rounding) equal parts, n >= 1 (otherwise it has no samples, but for
+  /// `at_least_one`); sample
   /// i lies first + i parts from t0, 0 <= i < n.
   bool divided = false;
   double rounding = 0.5;
@@ -61,9 +63,9 @@ struct RaySteps {
   /// lie beyond the region, where the field is what the texture's wrapping makes of it; the texture does not
   /// repeat, the region is all of it, and there are no clip planes. Null: samples lie up to L.
   std::optional<double> counted_from;
-  /// Every ray has its first sample: a ray that is too short for one, and one whose first sample lies beyond
-  /// its end or behind the opaque geometry (not one whose entry does). So sample programs that look for the end
-  /// only after a sample, as VTK's. Beyond the region as for `counted_from`.
+  /// Every ray that enters the region before the far plane and the opaque geometry has its first sample,
+  /// wherever that lies: programs that look for the end of a ray only after a sample, as VTK's. Samples beyond
+  /// the region as for `counted_from`. Where `divided`, a ray has one part at least.
   bool at_least_one = false;
   /// The samples stand for the whole of their ray (the midpoint rule): sample i for the step around it, the
   /// last one for all that is left, a half to one and a half steps, with the opacity and colour of that length.
@@ -75,14 +77,27 @@ struct RaySteps {
 
   /// By so many steps, at most, do samples lie beyond the end of their ray.
   double beyond_end() const {
-    if (!counted_from && (!at_least_one || divided)) return 0;
-    double latest = 0;
-    if (offsets) {
-      for (const float offset : offsets->steps) latest = std::max(latest, double(offset));
-    }
-    return std::max(0.0, first + latest - (at_least_one ? 0 : *counted_from));
+    const double within = most_within();
+    double beyond = std::max(0.0, first - within);
+    if (!offsets) return beyond;
+    for (const float offset : offsets->steps) beyond = std::max(beyond, first + double(offset) - within);
+    return beyond;
+  }
+  /// Whether any do.
+  bool any_beyond_end() const {
+    const double within = most_within();
+    if (first > within) return true;
+    return offsets && std::any_of(offsets->steps.begin(), offsets->steps.end(),
+                                  [&](float offset) { return first + double(offset) > within; });
   }
   bool operator==(const RaySteps&) const = default;
+
+ private:
+  /// A first sample that lies so many steps in, or fewer, is within its ray.
+  double most_within() const {
+    if (at_least_one) return divided ? 1 : 0;
+    return counted_from.value_or(std::numeric_limits<double>::infinity());
+  }
 };
 
 /// Where the second sample of a segment lies, whose first one lies on its plane: so many plane spacings further

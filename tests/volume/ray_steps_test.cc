@@ -126,10 +126,10 @@ TEST(RaySteps, EndAtOpaqueGeometryAndClipPlanes) {
   const BrickStore store = filled(texture);
   for (const double past : {0.0, 1.0})
     for (const Case& c : cases()) {
-      if (c.counted_from || c.at_least_one) continue;  // know no clip planes
+      if (c.counted_from) continue;  // know no clip planes
       RenderRequest request = request_of(texture, c);
       request.steps->past_depth = past;
-      request.clip_planes = {{{1, 0.3, -0.2}, -0.2}};
+      if (!c.at_least_one) request.clip_planes = {{{1, 0.3, -0.2}, -0.2}};
       const auto whole = slice_sum(field, request, request.window);
       DepthImage depth;
       depth.rect = request.window;
@@ -150,6 +150,23 @@ TEST(RaySteps, EndAtOpaqueGeometryAndClipPlanes) {
       EXPECT_LE(d.pixels_over, pixels_at_the_end) << c.name << ", " << past << " steps past the depth";
       EXPECT_GT(difference(whole, reference).rms, 1e-3) << "the wall hides nothing: the test tests nothing";
     }
+}
+
+TEST(RaySteps, OfRaysThatEnterBehindTheFarPlaneHaveNoSample) {
+  const Texture texture = noise(describe({37, 29, 41}, TexelType::u8, Wrap::edge), 8);
+  const Field field = texture_field(texture.description, Filter::linear, texture.texels);
+  for (const Case& c : cases()) {
+    if (!c.at_least_one) continue;
+    RenderRequest request = request_of(texture, c);
+    // The far plane through the volume: z grows until it is w at less depth.
+    for (std::size_t k = 0; k < 4; ++k)
+      request.texture_to_clip[8 + k] += 0.04 * request.texture_to_clip[12 + k];
+    Image image(request.window);
+    FrameCounts counts;
+    raycast(filled(texture), request, image, counts);
+    EXPECT_LE(difference(image, slice_sum(field, request, request.window), 1e-3).pixels_over, pixels_at_the_end)
+        << c.name;
+  }
 }
 
 TEST(RaySteps, GiveTheSameImageForAnyPartition) {
@@ -251,6 +268,9 @@ TEST(RaySteps, WithoutSenseAreRefused) {
   EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "not the whole texture";
   bad.steps->divided = true;
   EXPECT_NO_THROW(validate(texture.description, bad)) << "none lies beyond";
+  bad.steps->first = 1.5;
+  EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "beyond its one part";
+  bad.steps->first = 1;
   bad.steps->divided = false;
   bad.region = {{0, 0, 0}, {1, 1, 1}};
   EXPECT_NO_THROW(validate(texture.description, bad));

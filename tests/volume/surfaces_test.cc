@@ -356,6 +356,29 @@ TEST(Light, OnSamplesBeyondTheExitIsWhatDoublePrecisionSays) {
     }
 }
 
+TEST(Light, OnFirstSamplesBeyondTheExitIsWhatDoublePrecisionSays) {
+  for (const TexelType type : {TexelType::u8, TexelType::f32}) {
+    Texture texture = sampled(describe({40, 37, 43}, type, Wrap::edge), marschner_lobb_field());
+    RenderRequest request = request_on_steps(texture);
+    request.light = some_light();
+    // As long as the box is deep.
+    for (double& number : request.steps->metric) number /= 40;
+    request.steps->first = 0.75;
+    request.steps->at_least_one = true;
+    give_ghost_layer(texture, request);
+    FrameCounts counts;
+    const Image image = drawn(texture, request, counts);
+    const Field field = texture_field(texture.description, Filter::linear, texture.texels);
+    const auto shade = [&](const Vec3& t, const Vec3& way, const std::array<double, 4>& colour) {
+      return illuminated(field, texture.description, *request.light, t, way, colour);
+    };
+    EXPECT_LE(difference(image, slice_sum(field, request, request.window, shade), 1e-3).pixels_over,
+              pixels_that_graze);
+    request.steps->at_least_one = false;
+    EXPECT_GT(difference(image, drawn(texture, request, counts)).rms, 1e-3) << "no ray is too short";
+  }
+}
+
 /// Light from the eye that is no one's formula.
 Light some_response() {
   Light light = some_light();

@@ -125,7 +125,11 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
         last = hn::Min(last, hn::Floor(to_depth));
         end = hn::Min(end, to_depth);
       }
-      if (setup.steps->at_least_one) last = hn::IfThenElse(hn::Le(entry, exit), hn::Max(last, zero), last);
+      if (setup.steps->at_least_one) {
+        const auto entered = hn::And(hn::Le(entry, exit), hn::Le(entry, high));
+        last = hn::IfThenElse(entered, hn::Max(last, zero), last);
+        end = hn::Max(end, last);
+      }
       low = hn::Add(entry, hn::Mul(hn::Add(offset, first), part));
     } else {
       low = first;

@@ -134,9 +134,10 @@ void validate_bound(const VolumeDescription& volume, const RenderRequest& reques
 /// Samples beyond the region must not lie in texels that only others hold, and not in segments.
 void validate_count(const VolumeDescription& volume, const RenderRequest& request) {
   const auto& steps = request.steps;
-  if (!steps || (!steps->counted_from && (!steps->at_least_one || steps->divided))) return;
+  if (!steps) return;
   constexpr double most_beyond = 16;
   const double beyond = steps->beyond_end();
+  if (!steps->counted_from && beyond == 0) return;
   if (beyond > most_beyond) refuse("samples lie {} steps beyond the end of their ray", beyond);
   if (beyond > 0 && std::ranges::find(volume.wrap, Wrap::repeat) != volume.wrap.end())
     refuse("samples lie beyond the end of their ray in a texture that repeats");

@@ -309,7 +309,7 @@ void take_steps(const RenderRequest& request, const Vec4& near, const Vec4& far,
     };
     const double depth_s = s - rule.past_depth * part;
     const double counted_s = s - uncounted * part;
-    const bool anyway = rule.at_least_one && i == 0;
+    const bool anyway = rule.at_least_one && i == 0 && enter <= 1;
     const bool beyond_end = counted_s > 1 || counted_s > leave;
     if (s < 0 || (beyond_end && !anyway) || cut_away(request, point(s))) continue;
     if ((anyway || visible(depth_s)) && visible(enter)) sample_at(point(s), point(s));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 #include <span>
+#include <utility>
 
 #include "spu/volume/proxy/extreme_steps.h"
 #include "spu/volume/proxy/step_fit.h"
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double most_elsewhere = 0.05;        ///< of rays, as extremes_lie_on
 constexpr double colours_of_8_bits = 0.3;      ///< of a step
-constexpr double shortest_displacement = 0.1;  ///< of a step: less cannot be told from rounding
+constexpr double shortest_displacement = 0.6;  ///< of a step: less is not told from what colours leave open
 
 /// Those that have samples wherever they begin: some programs take one beyond the end of shorter ones.
 std::vector<RayEnds> long_ones(std::vector<RayEnds> ends, const volume::RaySteps& rule) {
@@ -35,14 +36,10 @@ double later_than(const volume::RaySteps& rule, std::span<const RayEnds> ends) {
   return *middle;
 }
 
-/// Whether nearly all rays have it later by their pixel's number.
-bool begin_by(const volume::RayOffsets& numbers, const Jitter& jitter, const volume::RaySteps& rule,
-              std::span<const RayEnds> ends) {
-  const auto elsewhere = std::ranges::count_if(ends, [&](const RayEnds& ray) {
-    const double expected = rule.first + jitter.steps_per_unit * numbers.at(ray.x, ray.y);
-    return !(std::abs(ray.first * steps_of_way(rule, ray.way) - expected) <= colours_of_8_bits);
-  });
-  return !ends.empty() && double(elsewhere) <= most_elsewhere * double(ends.size());
+volume::RaySteps moved_by(volume::RaySteps rule, volume::RayOffsets numbers, const Jitter& jitter) {
+  for (float& number : numbers.steps) number = float(number * jitter.steps_per_unit);
+  rule.offsets = std::move(numbers);
+  return rule;
 }
 
 /// Whether there are fewer samples where rays begin later, or as many, and they lie beyond the end.
@@ -83,14 +80,23 @@ std::optional<ExtremeJitter> jitter_by(const MarchContext& measured, FieldProbe&
 
   std::mt19937 random(1);
   const std::vector<RayEnds> mixed = long_ones(ends_under([&] { return float(random() & 1U); }), rule);
-  if (!begin_by(shown, found.jitter, rule, mixed)) return std::nullopt;
+  if (mixed.empty() || !begin_as_said(moved_by(rule, shown, found.jitter), mixed)) return std::nullopt;
   probe.show_own(texture);
-  const std::vector<RayEnds> own = long_ones(ends_of_rays(measured, probe, table, box), rule);
-  if (!begin_by(*numbers, found.jitter, rule, own)) return std::nullopt;
+  const std::vector<RayEnds> own = ends_of_rays(measured, probe, table, box);
+  if (!begin_as_said(moved_by(rule, *numbers, found.jitter), own)) return std::nullopt;
   return found;
 }
 
 }  // namespace
+
+bool begin_as_said(const volume::RaySteps& steps, std::vector<RayEnds> ends) {
+  const std::vector<RayEnds> told = long_ones(std::move(ends), steps);
+  const auto elsewhere = std::ranges::count_if(told, [&](const RayEnds& ray) {
+    const double expected = steps.first + (steps.offsets ? steps.offsets->at(ray.x, ray.y) : 0.0);
+    return !(std::abs(ray.first * steps_of_way(steps, ray.way) - expected) <= colours_of_8_bits);
+  });
+  return double(elsewhere) <= most_elsewhere * double(told.size());
+}
 
 std::optional<ExtremeJitter> find_extreme_jitter(const MarchContext& measured, FieldProbe& probe,
                                                  const volume::TransferFunction& table, const ProxyBox& box) {

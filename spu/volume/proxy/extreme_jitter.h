@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "spu/volume/proxy/extreme_steps.h"
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/jitter.h"
 #include "volume/classification.h"
@@ -21,5 +22,9 @@ struct ExtremeJitter {
 /// one. Afterwards `probe` shows the program's own textures.
 std::optional<ExtremeJitter> find_extreme_jitter(const MarchContext& measured, FieldProbe& probe,
                                                  const volume::TransferFunction& table, const ProxyBox& box);
+
+/// Whether nearly all rays begin by the offsets of `steps`. Only rays tell that have samples wherever they
+/// begin; true where there are none.
+bool begin_as_said(const volume::RaySteps& steps, std::vector<RayEnds> ends);
 
 }  // namespace understudy::spu

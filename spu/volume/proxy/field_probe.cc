@@ -260,6 +260,13 @@ std::vector<volume::Rgba> FieldProbe::at_layer(double x, double y, const Layer& 
   });
 }
 
+std::array<double, 2> FieldProbe::middle_of_pixel_at(double x, double y) const {
+  const auto middle = [&](double place) {
+    return 2 * (std::clamp(std::floor((place + 1) / 2 * fine_), 0.0, double(fine_ - 1)) + 0.5) / fine_ - 1;
+  };
+  return {middle(x), middle(y)};
+}
+
 std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::size_t wanted,
                                                const std::function<void(std::size_t)>& show_field) {
   // Every draw puts the one pixel that is looked at to a place of its own, so that one read gets them all.

@@ -94,6 +94,9 @@ class FieldProbe {
   /// Texels along the one axis of a ramp, and of other fields that are to be as fine as can be.
   int finest_texels() const { return ramp_texels_; }
 
+  /// The middle of the pixel that at() draws for (x, y), in normalised device coordinates.
+  std::array<double, 2> middle_of_pixel_at(double x, double y) const;
+
   bool culls_faces() const { return saved_.was_enabled(GL_CULL_FACE); }
 
   /// As at(), the sum of all fragments of a pixel instead of the nearest one; nothing where faces are culled.

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/ray_probes.h"
+#include "spu/volume/proxy/step_fit.h"
 
 namespace understudy::spu {
 namespace {
@@ -19,8 +21,39 @@ double shortest_counted(const volume::RaySteps& rule, const std::optional<Jitter
   return rule.first + (jitter ? std::max(jitter->steps_per_unit, 0.0) : 0.0);
 }
 
-float most_seen(const Rgba& colour) {
-  return *std::ranges::max_element(colour);
+Rgba ray_of_one_sample(const March& march, float value) {
+  const Rgba sample = even_sample(march, value);
+  return march.shows_one_colour() ? sample : ray_of(march, sample, 1);
+}
+
+/// Two values by which a ray of one sample has colours that differ most; none where they hardly do. Whatever a
+/// ray without a sample shows, it is not both.
+std::optional<std::array<float, 2>> unlike_values(const March& march, const std::vector<float>& values) {
+  constexpr float told_apart = 1e-4F;
+  const auto farthest_from = [&](float value) {
+    const Rgba from = ray_of_one_sample(march, value);
+    return *std::ranges::max_element(
+        values, {}, [&](float other) { return largest_difference(from, ray_of_one_sample(march, other)); });
+  };
+  const float one = farthest_from(values.front());
+  const float other = farthest_from(one);
+  if (!(largest_difference(ray_of_one_sample(march, one), ray_of_one_sample(march, other)) > told_apart))
+    return std::nullopt;
+  return std::array{one, other};
+}
+
+/// The rays of about half that many steps, in as many directions, by the length at the pixel that is drawn.
+std::vector<Ray> short_rays(const FieldProbe& probe, const RaysThroughBox& rays, const volume::RaySteps& rule,
+                            double counted) {
+  constexpr double shortest = 0.02;  // of a step: shorter rays may miss their pixel
+  std::vector<Ray> found = rays_of_length(rays, rule, counted / 2);
+  for (Ray& ray : found) {
+    const auto drawn = probe.middle_of_pixel_at(ray.x, ray.y);
+    const auto way = rays.way(drawn[0], drawn[1]);
+    ray = {drawn[0], drawn[1], way ? steps_of_way(rule, *way) : 0};
+  }
+  std::erase_if(found, [&](const Ray& ray) { return !(ray.length > shortest && ray.length < 0.9 * counted); });
+  return found;
 }
 
 }  // namespace
@@ -28,27 +61,29 @@ float most_seen(const Rgba& colour) {
 bool takes_first_sample_anyway(const MarchContext& measured, FieldProbe& probe, const RaysThroughBox& rays,
                                const March& march, const volume::RaySteps& rule,
                                const std::vector<float>& values) {
-  constexpr double shortest = 0.02;  // of a step: shorter rays may miss their pixel
   constexpr std::ptrdiff_t fewest_rays = 3;
   const double counted = shortest_counted(rule, march.jitter);
-  if (march.background || rule.counted_from || counted <= shortest) return false;
-  const float value = *std::ranges::max_element(
-      values, {}, [&](float candidate) { return most_seen(even_sample(march, candidate)); });
-  const float of_sample = most_seen(even_sample(march, value));
-  if (!(of_sample > 0)) return false;
-  if (march.jitter && !begin_rays_at(measured.run, probe, *march.jitter, 1)) return false;
+  if (march.background || rule.counted_from || !(counted > 0)) return false;
+  const auto unlike = unlike_values(march, values);
+  if (!unlike) return false;
+  const std::array expected{ray_of_one_sample(march, unlike->front()),
+                            ray_of_one_sample(march, unlike->back())};
+  const float near = largest_difference(expected[0], expected[1]) / 4;
+  const float latest = march.jitter && march.jitter->steps_per_unit > 0 ? 1 : 0;
+  if (march.jitter && !begin_rays_at(measured.run, probe, *march.jitter, latest)) return false;
   const bool already = premultiplied_already(measured, march);
-  std::ptrdiff_t seen = 0;
-  std::ptrdiff_t told = 0;
-  for (const Ray& ray : rays_of_length(rays, rule, counted / 2)) {
-    if (!(ray.length > shortest && ray.length < 0.9 * counted)) continue;
-    const Rgba fragment = probe.at(ray.x, ray.y, std::array{value}).front();
-    if (!reached(fragment)) continue;
-    ++told;
-    if (most_seen(premultiplied(fragment, already)) > of_sample / 4) ++seen;
+  std::ptrdiff_t with_sample = 0;
+  std::ptrdiff_t drawn = 0;
+  for (const Ray& ray : short_rays(probe, rays, rule, counted)) {
+    const auto fragments = probe.at(ray.x, ray.y, *unlike);
+    if (!std::ranges::all_of(fragments, reached)) continue;
+    ++drawn;
+    const bool both = largest_difference(premultiplied(fragments[0], already), expected[0]) <= near &&
+                      largest_difference(premultiplied(fragments[1], already), expected[1]) <= near;
+    if (both) ++with_sample;
   }
   if (march.jitter) show_own_noise(measured.run, probe, *march.jitter);
-  return told >= fewest_rays && seen == told;
+  return drawn >= fewest_rays && with_sample == drawn;
 }
 
 }  // namespace understudy::spu

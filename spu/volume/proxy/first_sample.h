@@ -13,9 +13,9 @@
 
 namespace understudy::spu {
 
-/// What volume::RaySteps::at_least_one is under `rule`. `values`: all over the range. False where no ray in
-/// view is that short, and where the program has a background of its own, which hides what little one sample
-/// shows. Afterwards `probe` shows the program's own noise.
+/// Whether rays that `rule` gives no sample have their first one nevertheless (volume::RaySteps::at_least_one).
+/// `values`: all over the range. False where no ray in view is that short; not tested where the program puts
+/// its rays over a background of its own. Afterwards `probe` shows the program's own noise.
 bool takes_first_sample_anyway(const MarchContext& measured, FieldProbe& probe, const RaysThroughBox& rays,
                                const March& march, const volume::RaySteps& rule,
                                const std::vector<float>& values);

@@ -276,8 +276,10 @@ std::optional<Refusal> MarchMeasurement::measure_samples() {
 void MarchMeasurement::find_first_samples() {
   // Where planes cut the box, and where the eye is inside, samples may not lie beyond the end of their ray.
   if (march_.from_exit || measured_.clipped || !box_.cuts.empty()) return;
-  for (volume::RaySteps& rule : rules_)
+  for (volume::RaySteps& rule : rules_) {
+    if (misplaced(rule, false).value_or(0) > most_misplaced) continue;
     rule.at_least_one = takes_first_sample_anyway(measured_, probe_, rays_, march_, rule, values_);
+  }
 }
 
 std::optional<Refusal> MarchMeasurement::measure_light() {
@@ -381,7 +383,7 @@ void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::B
 
 bool MarchMeasurement::may_count_ahead(const volume::RaySteps& rule, const volume::Box& region) const {
   if (!volume::is_all_of_texture(region, measured_.texture.size)) return false;
-  return rule.beyond_end() == 0 ||
+  return !rule.any_beyond_end() ||
          std::ranges::find(measured_.texture.wrap, volume::Wrap::repeat) == measured_.texture.wrap.end();
 }
 

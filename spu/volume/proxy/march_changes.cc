@@ -8,6 +8,7 @@
 
 #include "spu/volume/classification/table_lookup.h"
 #include "spu/volume/proxy/exit_steps.h"
+#include "spu/volume/proxy/extreme_jitter.h"
 #include "spu/volume/proxy/extreme_steps.h"
 #include "spu/volume/proxy/facing_colours.h"
 #include "spu/volume/proxy/field_probe.h"
@@ -34,12 +35,14 @@ std::optional<bool> samples_lie_as_said(const MarchContext& measured, const Marc
   FieldProbe probe(measured);
   if (!probe.complete()) return std::nullopt;
   if (march.extreme) {
+    const auto ends = [&] { return ends_of_rays(measured, probe, march.table, box); };
+    if (march.jitter && !begin_as_said(march.steps, ends())) return false;
     if (!held_still(measured, probe, march)) return false;
     volume::RaySteps steps = march.steps;
     steps.offsets.reset();
-    const std::vector<RayEnds> ends = ends_of_rays(measured, probe, march.table, box);
-    if (ends.empty()) return std::nullopt;
-    return lie_on(steps, ends);
+    const std::vector<RayEnds> still = ends();
+    if (still.empty()) return std::nullopt;
+    return lie_on(steps, still);
   }
   const std::vector<float> values = values_over(measured.range);
   const auto middle = RaysThroughBox(box.camera.texture_to_clip, box.region, box.cuts).middle();
@@ -104,10 +107,10 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
   const auto counted = counted_rays(measured, probe, rays, march);
   if (const auto* reason = std::get_if<std::string>(&counted)) return *reason;
   const auto& metric = march.steps.metric;
-  const std::array spaces{axes_in_texels(measured.texture.size),
-                          volume::Vec3{volume::length({metric[0], metric[3], metric[6]}),
+  const std::array spaces{volume::Vec3{volume::length({metric[0], metric[3], metric[6]}),
                                        volume::length({metric[1], metric[4], metric[7]}),
-                                       volume::length({metric[2], metric[5], metric[8]})}};
+                                       volume::length({metric[2], metric[5], metric[8]})},
+                          axes_in_texels(measured.texture.size)};
   for (const StepFit& fit : fit_steps(std::get<std::vector<CountedRay>>(counted), spaces)) {
     const volume::RaySteps rule = rules_of(fit).front();
     if (fit.unexplained > most_unexplained || rule.first != counted_from(march.steps)) continue;

@@ -516,7 +516,7 @@ ImageRequest RayCasterStage::ask(const Draw& draw, const March& march, const Pro
   const bool cut = !image.ray_ends.empty() || !image.parts.front().empty();
   if (cut && march.steps.counted_from)
     throw Refusal{"planes cut a ray caster's box whose samples are counted before they are taken"};
-  // There one sample of the rim is lost.
+  // Rays too short for a sample then have none.
   if (cut || !volume::is_all_of_texture(image.request.region, draw.measured().texture.size))
     image.request.steps->at_least_one = false;
   // One number a pixel travels to the nodes.

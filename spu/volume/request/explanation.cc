@@ -70,7 +70,7 @@ std::string sampling_of(const volume::RenderRequest& request, const std::array<i
                                                  : ", every ray later by a number of its own";
   const std::string counted = steps.counted_from
                                   ? fmt::format(", as many as if it were {} in", *steps.counted_from)
-                              : steps.at_least_one ? ", one at least"
+                              : steps.at_least_one ? ", at least one on every ray"
                                                    : "";
   return fmt::format("a ray caster's box, {:.3f} x {:.3f} x {:.3f} {} a texel, the first sample {} in{}{}{}",
                      a_texel[0], a_texel[1], a_texel[2], steps.divided ? "equal parts" : "steps", steps.first,

@@ -29,6 +29,7 @@ std::vector<std::byte> encode(const LoadRequest& request) {
   if (request.hints.type) out.integer(std::int64_t(*request.hints.type));
   out.integer(request.hints.big_endian.has_value());
   if (request.hints.big_endian) out.integer(*request.hints.big_endian);
+  out.integer(request.hints.level);
   out.integer(request.texels.type.has_value());
   if (request.texels.type) out.integer(std::int64_t(*request.texels.type));
   out.integer(request.texels.range.has_value());
@@ -50,6 +51,8 @@ LoadRequest decode_load_request(std::span<const std::byte> payload) {
   }
   if (in.flag("hints.type")) request.hints.type = in.enumerator("hints.type", volume::ScalarType::f64);
   if (in.flag("hints.big_endian")) request.hints.big_endian = in.flag("hints.big_endian");
+  constexpr int most_levels = 16;
+  request.hints.level = in.small("hints.level", 0, most_levels);
   if (in.flag("texels.type")) request.texels.type = in.enumerator("texels.type", volume::TexelType::rgba8);
   if (in.flag("texels.range")) {
     request.texels.range.emplace();

@@ -44,15 +44,16 @@ class Folder {
 };
 
 /// The names are what most formats are known by. The .img of a .hdr is the same bytes.
-constexpr std::array<const char*, 9> names = {"a.nrrd",
-                                              "a.nhdr",
-                                              "a.nii",
-                                              "a.nii.gz",
-                                              "a.hdr",
-                                              "a.vti",
-                                              "a.vti.gz",
-                                              "a_3x4x5_int16be.raw",
-                                              "a_3x4x5_f32.raw.gz"};
+constexpr std::array<const char*, 10> names = {"a.nrrd",
+                                               "a.nhdr",
+                                               "a.nii",
+                                               "a.nii.gz",
+                                               "a.hdr",
+                                               "a.vti",
+                                               "a.vti.gz",
+                                               "a_3x4x5_int16be.raw",
+                                               "a_3x4x5_f32.raw.gz",
+                                               "a.uvol"};
 
 void read(const std::string& path, const ReadableFiles& files, bool at_end) {
   std::unique_ptr<VolumeFile> file = open_volume(path, {}, files);

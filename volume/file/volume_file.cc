@@ -10,6 +10,7 @@
 
 #include "volume/cell_lattice.h"
 #include "volume/file/file_error.h"
+#include "volume/file/hierarchical_volume.h"
 #include "volume/file/nifti.h"
 #include "volume/file/nrrd.h"
 #include "volume/file/raw.h"
@@ -120,6 +121,11 @@ std::unique_ptr<VolumeFile> dense_volume(const FileDescription& description, Den
 
 std::unique_ptr<VolumeFile> open_volume(const std::string& name, const FileHints& hints,
                                         const ReadableFiles& files) {
+  const bool in_levels = !is_synthetic(name) && is_hierarchical(name, files);
+  if (in_levels) return open_level(name, hints.level, files);
+  if (hints.level != 0)
+    throw FileError(
+        fmt::format("{}: has no levels of detail; make some: understudy convert {} -o NAME.uvol", name, name));
   if (is_synthetic(name)) return open_synthetic(name);
   if (is_nifti(name)) return open_nifti(name, files);
   if (is_vti(name)) return open_vti(name, files);

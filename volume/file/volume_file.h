@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A volume in a file, of which any box can be read without the rest.
 //
-// NRRD is known by its first bytes, NIfTI and VTI by their names (.nii .hdr .img .vti, each also with .gz), and
-// a name that begins with "synthetic:" needs no file. Everything else is raw scalars, whose size and type come
-// from the caller or from the name (engine.256x256x110, head_256x256x113_int16be.raw.gz).
+// NRRD and UVOL are known by their first bytes, NIfTI and VTI by their names (.nii .hdr .img .vti, each also
+// with .gz), and a name that begins with "synthetic:" needs no file. Everything else is raw scalars, whose size
+// and type come from the caller or from the name (engine.256x256x110, head_256x256x113_int16be.raw.gz).
 #pragma once
 
 #include <array>
@@ -21,18 +21,30 @@
 
 namespace understudy::volume {
 
-/// What the user says about a file that does not say it itself: of raw files only.
+/// What the user says about a file: of raw files what these do not say themselves, of hierarchical ones the
+/// level.
 struct FileHints {
   std::optional<std::array<int, 3>> size;
   std::optional<ScalarType> type;
   std::optional<bool> big_endian;
+  int level = 0;  ///< of a hierarchical volume: which of its levels is read; 0 is the finest
 
   bool operator==(const FileHints&) const = default;
 };
 
+/// What a coarser level of a hierarchical volume is of.
+struct LevelOfDetail {
+  int level = 0;
+  std::array<int, 3> volume_size{};    ///< of the finest level
+  std::array<double, 2> values{0, 0};  ///< the volume's least and greatest
+  /// No value of the volume lies farther from what the level gives there by trilinear interpolation.
+  double error = 0;
+};
+
 struct FileDescription {
   std::array<int, 3> size{};
-  Vec3 spacing{1, 1, 1};  ///< between scalars, in any unit
+  Vec3 spacing{1, 1, 1};                ///< between scalars, in any unit
+  std::optional<LevelOfDetail> detail;  ///< where this is a coarser level
   ScalarType type = ScalarType::u8;
   /// A scalar s of the file means the value offset + scale * s.
   double scale = 1;

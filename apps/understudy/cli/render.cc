@@ -144,6 +144,13 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
       ->required()
       ->check(can_be_written(".png"));
   render_command
+      ->add_option(
+          "--level", arguments->scene.level,
+          "of a hierarchical volume: a coarser level of detail, with every 2nd (1), 4th (2), … sample; "
+          "--step is in its samples")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  render_command
       ->add_option("--save-float", arguments->save_float, "the image before it is rounded, and its alpha")
       ->type_name("F.pfm")
       ->check(can_be_written(".pfm"));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -59,6 +60,14 @@ Json image_json(const RenderFigures& figures) {
                                                 : "surfaces"}};
 }
 
+Json level_json(const volume::FileDescription& description) {
+  if (!description.detail) return nullptr;
+  const volume::LevelOfDetail& detail = *description.detail;
+  return {{"level", detail.level},
+          {"volume_size", detail.volume_size},
+          {"value_error", std::isfinite(detail.error) ? Json(detail.error) : Json()}};
+}
+
 }  // namespace
 
 std::string summary_text(const RenderFigures& figures) {
@@ -78,6 +87,12 @@ std::string summary_text(const RenderFigures& figures) {
                       over_ranks(figures.ranks, &compositor::RankLoad::bytes_read),
                       over_ranks(figures.ranks, &compositor::RankLoad::brick_bytes),
                       over_ranks(figures.ranks, &compositor::RankLoad::peak_bytes));
+  if (const auto& detail = figures.description.detail)
+    text += fmt::format("understudy: level {} of a volume of {} x {} x {}: {}\n", detail->level,
+                        detail->volume_size[0], detail->volume_size[1], detail->volume_size[2],
+                        std::isfinite(detail->error)
+                            ? fmt::format("its values are at most {:.4g} off", detail->error)
+                            : "no bound of its error: some values are no finite numbers");
   if (figures.bound)
     text += fmt::format(
         "understudy: certified: no channel of any pixel is further than {:.3g} from the integral, of half the "
@@ -99,6 +114,7 @@ void write_render_report(const std::string& path, const RenderFigures& figures) 
   report["volume"] = {{"file", figures.file},
                       {"size", figures.description.size},
                       {"spacing", figures.description.spacing},
+                      {"level_of_detail", level_json(figures.description)},
                       {"scalar_type", std::string(volume::name_of(figures.description.type))},
                       {"texel_type", name_of(figures.mapping.type)},
                       {"scale", figures.mapping.scale},

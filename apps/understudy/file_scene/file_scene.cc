@@ -13,6 +13,8 @@
 #include "apps/understudy/file_scene/number_list.h"
 #include "apps/understudy/images/image.h"
 #include "volume/file/synthetic.h"
+#include "volume/hierarchy/level_request.h"
+#include "volume/matrix.h"
 #include "volume/opacity_correction.h"
 #include "volume/raycast/segment_scene.h"
 
@@ -20,22 +22,6 @@ namespace understudy::launcher {
 namespace {
 
 constexpr volume::VolumeId volume_id = 1;
-
-volume::FileHints hints_of(const SceneArguments& arguments) {
-  volume::FileHints hints;
-  if (!arguments.volume_size.empty()) {
-    hints.size.emplace();
-    std::ranges::copy(arguments.volume_size, hints.size->begin());
-  }
-  if (!arguments.type.empty()) {
-    hints.type = volume::scalar_type_named(arguments.type);
-    if (!hints.type)
-      throw std::invalid_argument(fmt::format(
-          "there is no type '{}'; give u8, i8, u16, i16, u32, i32, u64, i64, f32 or f64", arguments.type));
-  }
-  if (arguments.big_endian) hints.big_endian = true;
-  return hints;
-}
 
 volume::TexelChoice texels_of(const SceneArguments& arguments) {
   volume::TexelChoice choice;
@@ -70,9 +56,10 @@ ImageSettings image_of(const SceneArguments& arguments) {
 
 void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
   subcommand
-      .add_option("VOLUME", arguments.volume,
-                  "raw (size and type in its name: head_256x256x113_int16be.raw.gz), NRRD, NIfTI or VTI, or "
-                  "synthetic:XxYxZ[:u8|u16|f32[:shells|lobes|gyroid]]")
+      .add_option(
+          "VOLUME", arguments.volume,
+          "raw (size and type in its name: head_256x256x113_int16be.raw.gz), NRRD, NIfTI, VTI or UVOL, or "
+          "synthetic:XxYxZ[:u8|u16|f32[:shells|lobes|gyroid]]")
       ->required();
   subcommand
       .add_option(
@@ -93,11 +80,7 @@ void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
                   "early ray termination: a ray ends where less than this shows through")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  subcommand.add_option("--volume-size", arguments.volume_size, "of raw scalars")
-      ->type_name("X Y Z")
-      ->expected(3);
-  subcommand.add_option("--type", arguments.type, "of raw scalars: u8, i8, … f64");
-  subcommand.add_flag("--big-endian", arguments.big_endian, "of raw scalars");
+  add_raw_hints(subcommand, arguments.raw);
   subcommand.add_option("--spacing", arguments.spacing, "between scalars, instead of the file's")
       ->type_name("X Y Z")
       ->expected(3)
@@ -114,11 +97,16 @@ volume::Vec3 FileScene::extent() const {
   return extent;
 }
 
+volume::Vec3 FileScene::voxel() const {
+  return volume::scale(file.spacing, file.detail ? 1 / double(1 << file.detail->level) : 1.0);
+}
+
 FileScene scene_of(const SceneArguments& arguments) {
   const std::string file = volume::is_synthetic(arguments.volume)
                                ? arguments.volume
                                : std::filesystem::absolute(arguments.volume).string();
-  const volume::FileHints hints = hints_of(arguments);
+  volume::FileHints hints = file_hints(arguments.raw);
+  hints.level = arguments.level;
   FileScene scene = scene_of(arguments, volume::open_volume(file, hints)->description());
   scene.load.file = file;
   scene.load.hints = hints;
@@ -131,6 +119,15 @@ FileScene scene_of(const SceneArguments& arguments, const volume::FileDescriptio
   scene.load.texels = texels_of(arguments);
   scene.file = described;
   if (!arguments.spacing.empty()) std::ranges::copy(arguments.spacing, scene.file.spacing.begin());
+  if (const auto& detail = described.detail) {
+    if (arguments.error_bound)
+      throw std::invalid_argument(
+          "--error-bound says nothing of what a level of detail leaves out: leave out --level");
+    const double apart = double(1 << detail->level);
+    // A step leads from sample to sample of the level.
+    scene.image.step *= apart;
+    if (!arguments.spacing.empty()) scene.file.spacing = volume::scale(scene.file.spacing, apart);
+  }
   for (double& distance : scene.file.spacing) distance = volume::believable_spacing(distance);
   scene.mapping = volume::mapping_of(scene.file, scene.load.texels);
   scene.load.volume.id = volume_id;
@@ -149,8 +146,11 @@ FileScene scene_of(const SceneArguments& arguments, const volume::FileDescriptio
 }
 
 volume::RenderRequest unclassified_request(const FileScene& scene, const ImageSettings& image) {
-  volume::RenderRequest request = volume::orbit_request(scene.load.volume, scene.file.spacing, image.camera,
-                                                        image.width, image.height, image.step);
+  volume::VolumeDescription volume = scene.load.volume;
+  volume.size = scene.volume_size();
+  volume::RenderRequest request =
+      volume::orbit_request(volume, scene.voxel(), image.camera, image.width, image.height, image.step);
+  if (scene.file.detail) volume::show_level(request, volume.size, scene.file.detail->level);
   request.termination = image.termination;
   const Shading& shading = image.shading;
   request.method = shading.method;
@@ -176,16 +176,20 @@ std::invalid_argument no_bound() {
 volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& image,
                                  const volume::TexelFigures& values) {
   volume::RenderRequest request = unclassified_request(scene, image);
+  // A level of detail may miss the volume's extremes, which colours go by.
+  const auto& detail = scene.file.detail;
+  const double least = detail ? detail->values[0] : values.low;
+  const double greatest = detail ? detail->values[1] : values.high;
   // A volume of one value has no range: the tables' least value is that one.
-  const double low = values.low <= values.high ? values.low : 0.0;
-  const double high = values.low < values.high ? values.high : low + 1;
+  const double low = least <= greatest ? least : 0.0;
+  const double high = least < greatest ? greatest : low + 1;
   const std::vector<double> surfaces = surface_values(image.shading, low, high);
   for (std::size_t i = 0; i < surfaces.size(); ++i)
     request.surfaces[i].value = scene.mapping.normalised(surfaces[i]);
   if (request.light) {
     // A thousandth of the values' range per voxel.
     const double range = std::abs(scene.mapping.normalised(high) - scene.mapping.normalised(low));
-    request.light->full_slope = float(1e-3 * range / *std::ranges::max_element(scene.file.spacing));
+    request.light->full_slope = float(1e-3 * range / std::ranges::max(scene.voxel()));
   }
   if (!image.shading.shows_volume) {
     if (image.bounds_error) throw no_bound();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/understudy/file_scene/raw_hints.h"
 #include "apps/understudy/file_scene/shading_options.h"
 #include "compositor/service/loading_service.h"
 #include "volume/file/texel_stream.h"
@@ -25,12 +26,11 @@ struct SceneArguments {
   std::string size = "512x512";
   double step = 1;
   double termination = 5e-6;
-  std::vector<int> volume_size;
-  std::string type;
-  bool big_endian = false;
+  RawHints raw;
   std::vector<double> spacing;
   std::string texels;
   std::string range;
+  int level = 0;
   bool error_bound = false;
 };
 
@@ -43,7 +43,7 @@ struct ImageSettings {
   volume::OrbitCamera camera;
   int width = 512;
   int height = 512;
-  double step = 1;  ///< between samples, in voxels
+  double step = 1;  ///< between samples, in voxels of the finest level
   float termination = 5e-6F;
   bool bounds_error = false;  ///< requests are made for certified bounds, too
 };
@@ -54,8 +54,12 @@ struct FileScene {
   volume::TexelMapping mapping;
   ImageSettings image;
 
-  /// Of the volume, in the unit of its spacing.
+  /// Of the texture that its scalars become, in the unit of their spacing.
   volume::Vec3 extent() const;
+  /// Of the volume itself, where `file` is a coarser level of it.
+  std::array<int, 3> volume_size() const { return file.detail ? file.detail->volume_size : file.size; }
+  /// Between the volume's own scalars.
+  volume::Vec3 voxel() const;
 };
 
 /// Everything that can be known to be wrong before a byte of the volume is read. The volume's ghost layer is

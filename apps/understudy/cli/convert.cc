@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/understudy/cli/convert.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "apps/understudy/cli/output_file.h"
+#include "apps/understudy/file_scene/raw_hints.h"
+#include "volume/file/volume_file.h"
+
+namespace understudy::launcher {
+namespace {
+
+struct Arguments {
+  std::string volume;
+  std::string out;
+  RawHints raw;
+  volume::HierarchyOptions options;
+  std::string prediction = "cubic";
+};
+
+/// On standard error: a line that is drawn over itself on a terminal, and one line for every fifth elsewhere.
+class Progress {
+ public:
+  void show(double part) {
+    const int percent = int(100 * part);
+    if (terminal_) {
+      fmt::print(stderr, "\runderstudy: converting {:3} %{}", percent, percent == 100 ? "\n" : "");
+      return;
+    }
+    if (percent < next_) return;
+    fmt::print(stderr, "understudy: converting {:3} %\n", percent);
+    next_ = percent / 20 * 20 + 20;
+  }
+
+ private:
+  bool terminal_ = isatty(STDERR_FILENO) == 1;
+  int next_ = 20;
+};
+
+int convert(const Arguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto volume = volume::open_volume(arguments.volume, file_hints(arguments.raw));
+  volume::HierarchyOptions options = arguments.options;
+  options.prediction = arguments.prediction == "cubic" ? volume::Prediction::cubic : volume::Prediction::linear;
+  Progress progress;
+  const volume::HierarchyFigures figures =
+      volume::write_hierarchical(*volume, arguments.out, options, [&](double part) { progress.show(part); });
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  fmt::print("{}: {}{:.2f} s, {:.0f} MB/s\n", arguments.out, figures_text(figures), seconds,
+             double(figures.scalar_bytes) / 1e6 / seconds);
+  return 0;
+}
+
+}  // namespace
+
+std::string figures_text(const volume::HierarchyFigures& figures) {
+  std::string text =
+      fmt::format("{} bytes, {:.3f} of the volume's {}\n", figures.file_bytes,
+                  double(figures.file_bytes) / double(figures.scalar_bytes), figures.scalar_bytes);
+  for (std::size_t level = 0; level < figures.levels.size(); ++level) {
+    const volume::HierarchyFigures::Level& of = figures.levels[level];
+    text += fmt::format("level {}: {} x {} x {}, {} bytes, {}\n", level, of.size[0], of.size[1], of.size[2],
+                        of.bytes,
+                        std::isfinite(of.error) ? fmt::format("values off by {:.4g} at most", of.error)
+                                                : "no bound of the error: some values are no finite numbers");
+  }
+  return text;
+}
+
+void add_convert(CLI::App& app, std::function<int()>& chosen) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* subcommand =
+      app.add_subcommand("convert", "a volume in levels of detail, compressed: a file that is read in part");
+  subcommand->add_option("VOLUME", arguments->volume, "raw, NRRD, NIfTI, VTI, UVOL or synthetic: as for render")
+      ->required();
+  subcommand->add_option("-o,--out", arguments->out, "the file to write")
+      ->required()
+      ->type_name("NAME.uvol")
+      ->check(can_be_written(".uvol"));
+  subcommand
+      ->add_option("--max-error", arguments->options.max_error,
+                   "no value of the volume may change by more; 0: none changes")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  subcommand
+      ->add_option("--prediction", arguments->prediction,
+                   "of samples by two neighbours (linear) or by four (cubic)")
+      ->check(CLI::IsMember({"linear", "cubic"}))
+      ->capture_default_str();
+  subcommand
+      ->add_option("--effort", arguments->options.effort, "of the compression: more is slower and smaller")
+      ->check(CLI::Range(1, 19))
+      ->capture_default_str();
+  add_raw_hints(*subcommand, arguments->raw);
+  subcommand->callback([arguments, &chosen] { chosen = [arguments] { return convert(*arguments); }; });
+}
+
+}  // namespace understudy::launcher

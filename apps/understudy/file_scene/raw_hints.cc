@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/understudy/file_scene/raw_hints.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace understudy::launcher {
+
+void add_raw_hints(CLI::App& subcommand, RawHints& hints) {
+  subcommand.add_option("--volume-size", hints.size, "of raw scalars")->type_name("X Y Z")->expected(3);
+  subcommand.add_option("--type", hints.type, "of raw scalars: u8, i8, … f64");
+  subcommand.add_flag("--big-endian", hints.big_endian, "of raw scalars");
+}
+
+volume::FileHints file_hints(const RawHints& hints) {
+  volume::FileHints told;
+  if (!hints.size.empty()) {
+    told.size.emplace();
+    std::ranges::copy(hints.size, told.size->begin());
+  }
+  if (!hints.type.empty()) {
+    told.type = volume::scalar_type_named(hints.type);
+    if (!told.type)
+      throw std::invalid_argument(fmt::format(
+          "there is no type '{}'; give u8, i8, u16, i16, u32, i32, u64, i64, f32 or f64", hints.type));
+  }
+  if (hints.big_endian) told.big_endian = true;
+  return told;
+}
+
+}  // namespace understudy::launcher

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volume/file/part_file.h"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "volume/file/file_error.h"
+
+namespace understudy::volume {
+
+PartFile::PartFile(const std::string& path) : path_(path) {
+  std::error_code none;
+  // What a link leads to is replaced, not the link.
+  if (std::filesystem::is_symlink(path, none)) path_ = std::filesystem::weakly_canonical(path, none);
+  if (std::filesystem::exists(path_, none) && !std::filesystem::is_regular_file(path_, none))
+    throw FileError(
+        fmt::format("{}: cannot be written: it is there and no plain file; give another name", path));
+  // Others may write in the folder, too: a name that they cannot guess.
+  std::uint64_t random = 0;
+  if (getrandom(&random, sizeof random, 0) != ssize_t(sizeof random)) fail();
+  beside_ = fmt::format("{}.{:016x}.part", path_, random);
+  file_.reset(std::fopen(beside_.c_str(), "wbxe"));
+  if (!file_) {
+    beside_.clear();
+    fail();
+  }
+}
+
+PartFile::~PartFile() {
+  file_.reset();
+  if (!beside_.empty()) std::remove(beside_.c_str());
+}
+
+void PartFile::append(std::span<const std::byte> bytes) {
+  write(bytes);
+  size_ += bytes.size();
+}
+
+void PartFile::replace(std::uint64_t at, std::span<const std::byte> bytes) {
+  if (fseeko(file_.get(), off_t(at), SEEK_SET) != 0) fail();
+  write(bytes);
+  if (fseeko(file_.get(), 0, SEEK_END) != 0) fail();
+}
+
+void PartFile::finish() {
+  if (std::fflush(file_.get()) != 0 || fsync(fileno(file_.get())) != 0) fail();
+  if (std::fclose(file_.release()) != 0) fail();
+  if (std::rename(beside_.c_str(), path_.c_str()) != 0) fail();
+  beside_.clear();
+}
+
+void PartFile::write(std::span<const std::byte> bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail();
+}
+
+void PartFile::fail() const {
+  throw FileError(fmt::format(
+      "{}: cannot be written: {}; check its name, the folder's permissions and the room on the disk", path_,
+      std::strerror(errno)));
+}
+
+}  // namespace understudy::volume

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The levels of a hierarchical volume and their blocks. Level 0 is the volume; level l + 1 has every second
+// sample of level l along each axis, the first one included. So its samples are some of the volume's own, and
+// neighbouring blocks of one level agree where they meet. The coarsest level is one block.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "volume/texel_box.h"
+
+namespace understudy::volume {
+
+/// Edge of a block, in samples of its level. Even.
+constexpr int hierarchy_block_edge = 64;
+
+using BlockPlace = std::array<int, 3>;
+
+class LevelGrid {
+ public:
+  /// `size` of the volume: 1 to max_axis_texels along each axis.
+  explicit LevelGrid(const std::array<int, 3>& size);
+
+  int levels() const { return levels_; }
+  int coarsest() const { return levels_ - 1; }
+  /// In samples.
+  std::array<int, 3> size(int level) const;
+  /// In blocks.
+  std::array<int, 3> blocks(int level) const;
+  /// The samples of a block, in its level.
+  TexelBox samples_of(int level, const BlockPlace& block) const;
+
+  /// Blocks are numbered from the coarsest level on, in each level x fastest.
+  std::size_t number_of(int level, const BlockPlace& block) const;
+  std::size_t count() const { return first_of(-1); }
+  /// The number of a level's first block; of level -1: behind the last one.
+  std::size_t first_of(int level) const;
+
+ private:
+  std::array<int, 3> size_;
+  int levels_ = 1;
+};
+
+/// The blocks in which samples of `box` lie, as a half-open box of places.
+TexelBox blocks_around(const TexelBox& box);
+
+/// The samples of the next level that those of `box` are predicted from.
+TexelBox coarser_samples_around(const TexelBox& box, const std::array<int, 3>& coarser_size);
+
+/// Calls `visit` with every place of a box of blocks, x fastest.
+template <typename Visit>
+void for_each_block(const TexelBox& blocks, Visit&& visit) {
+  for (int z = blocks.low[2]; z < blocks.high[2]; ++z)
+    for (int y = blocks.low[1]; y < blocks.high[1]; ++y)
+      for (int x = blocks.low[0]; x < blocks.high[0]; ++x) visit(BlockPlace{x, y, z});
+}
+
+}  // namespace understudy::volume

@@ -17,8 +17,8 @@ using namespace understudy::volume;
 
 int main(int argc, char** argv) {
   const auto file = open_volume(argc > 1 ? argv[1] : "synthetic:96x96x96:u8:shells");
-  const auto& [size, spacing, type, scale, offset] = file->description();
-  const VolumeDescription volume{.size = size, .stored = {{}, size}};
+  const FileDescription& about = file->description();
+  const VolumeDescription volume{.size = about.size, .stored = {{}, about.size}};
   std::vector<std::byte> texels(texels_in(volume.stored));
   file->read(volume.stored, texels);
 
@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   bricks.finish();
 
   constexpr double step = 1;
-  RenderRequest request = orbit_request(volume, spacing, {.azimuth = 30}, 400, 300, step);
+  RenderRequest request = orbit_request(volume, about.spacing, {.azimuth = 30}, 400, 300, step);
   request.classification = sampled(control_points_named("engine"), 0, 1, step);
   Image image(request.window);
   FrameCounts counts;

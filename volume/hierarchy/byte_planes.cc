@@ -26,9 +26,8 @@ std::vector<std::byte> packed_planes(std::span<const std::byte> residuals, std::
   const std::size_t count = residuals.size() / width;
   std::vector<std::byte> planes(residuals.size());
   for (std::size_t plane = 0; plane < width; ++plane) {
-    const std::byte* const from = residuals.data() + byte_in_memory(plane, width);
-    std::byte* const to = planes.data() + plane * count;
-    for (std::size_t i = 0; i < count; ++i) to[i] = from[i * width];
+    const std::size_t byte = byte_in_memory(plane, width);
+    for (std::size_t i = 0; i < count; ++i) planes[plane * count + i] = residuals[i * width + byte];
   }
   std::unique_ptr<ZSTD_CCtx, FreeContext> context(ZSTD_createCCtx());
   if (!context) throw std::bad_alloc();
@@ -53,9 +52,8 @@ bool unpack_planes(std::span<const std::byte> packed, std::size_t width, std::sp
   if (ZSTD_isError(bytes) || bytes != residuals.size()) return false;
   const std::size_t count = residuals.size() / width;
   for (std::size_t plane = 0; plane < width && width > 1; ++plane) {
-    const std::byte* const from = planes.data() + plane * count;
-    std::byte* const at = residuals.data() + byte_in_memory(plane, width);
-    for (std::size_t i = 0; i < count; ++i) at[i * width] = from[i];
+    const std::size_t byte = byte_in_memory(plane, width);
+    for (std::size_t i = 0; i < count; ++i) residuals[i * width + byte] = planes[plane * count + i];
   }
   return true;
 }

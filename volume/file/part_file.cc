@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volume/file/part_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/random.h>
 #include <unistd.h>
@@ -25,16 +26,27 @@ PartFile::PartFile(const std::string& path) : path_(path) {
   std::uint64_t random = 0;
   if (getrandom(&random, sizeof random, 0) != ssize_t(sizeof random)) fail();
   beside_ = fmt::format("{}.{:016x}.part", path_, random);
+  open_without_name();
+  if (file_) return;
   file_.reset(std::fopen(beside_.c_str(), "wbxe"));
-  if (!file_) {
-    beside_.clear();
-    fail();
-  }
+  if (!file_) fail();
+  has_name_ = true;
+}
+
+/// Where the file system can: if this process is killed, nothing is left.
+void PartFile::open_without_name() {
+  const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+  constexpr mode_t as_umask_says = 0666;
+  const int descriptor =
+      ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, as_umask_says);
+  if (descriptor < 0) return;
+  file_.reset(::fdopen(descriptor, "wb"));
+  if (!file_) ::close(descriptor);
 }
 
 PartFile::~PartFile() {
   file_.reset();
-  if (!beside_.empty()) std::remove(beside_.c_str());
+  if (has_name_) std::remove(beside_.c_str());
 }
 
 void PartFile::append(std::span<const std::byte> bytes) {
@@ -50,9 +62,15 @@ void PartFile::replace(std::uint64_t at, std::span<const std::byte> bytes) {
 
 void PartFile::finish() {
   if (std::fflush(file_.get()) != 0 || fsync(fileno(file_.get())) != 0) fail();
+  if (!has_name_) {
+    // A link never replaces a file, so that the name is a new one first.
+    const std::string self = fmt::format("/proc/self/fd/{}", fileno(file_.get()));
+    if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, beside_.c_str(), AT_SYMLINK_FOLLOW) != 0) fail();
+    has_name_ = true;
+  }
   if (std::fclose(file_.release()) != 0) fail();
   if (std::rename(beside_.c_str(), path_.c_str()) != 0) fail();
-  beside_.clear();
+  has_name_ = false;
 }
 
 void PartFile::write(std::span<const std::byte> bytes) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file that has its name only once it is whole: until then it lies beside it under a name of its own, and is
-// removed if it never becomes whole.
+// A file that has its name only once it is whole: until then it has none, or, where the file system must have
+// one, lies beside it under a name of its own, and is removed if it never becomes whole.
 #pragma once
 
 #include <cstddef>
@@ -32,11 +32,13 @@ class PartFile {
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
+  void open_without_name();
   void write(std::span<const std::byte> bytes);
   [[noreturn]] void fail() const;
 
   std::string path_;
-  std::string beside_;
+  std::string beside_;     ///< the name that it has until it is whole
+  bool has_name_ = false;  ///< `beside_`
   std::unique_ptr<std::FILE, Close> file_;
   std::uint64_t size_ = 0;
 };

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// A file that is written has its name only once it is whole, and nothing is left of one that never becomes so.
+#include "volume/file/part_file.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+
+#include "tests/volume/file/volume_files.h"
+
+namespace understudy::volume::testing {
+namespace {
+
+std::ptrdiff_t files_in(const TemporaryFolder& folder) {
+  return std::distance(std::filesystem::directory_iterator(folder.file("")), {});
+}
+
+bool files_need_no_name(const TemporaryFolder& folder) {
+  const int descriptor = ::open(folder.file("").c_str(), O_TMPFILE | O_WRONLY, 0600);
+  if (descriptor >= 0) ::close(descriptor);
+  return descriptor >= 0;
+}
+
+TEST(PartFile, HasItsNameOnceItIsWhole) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("a", std::string("what was there before"));
+  {
+    PartFile file(path);
+    file.append(std::as_bytes(std::span("12345", 5)));
+    file.replace(1, std::as_bytes(std::span("x", 1)));
+    EXPECT_EQ(std::filesystem::file_size(path), 21U);
+    file.finish();
+  }
+  EXPECT_EQ(std::filesystem::file_size(path), 5U);
+  EXPECT_EQ(files_in(folder), 1);
+  {
+    PartFile file(folder.file("b"));
+    file.append(std::as_bytes(std::span("12345", 5)));
+  }
+  EXPECT_EQ(files_in(folder), 1) << "it never became whole";
+}
+
+TEST(PartFile, OfAProcessThatIsKilledNothingIsLeft) {
+  const TemporaryFolder folder;
+  if (!files_need_no_name(folder)) GTEST_SKIP() << "this file system has no files without a name";
+  const pid_t child = fork();
+  if (child == 0) {
+    PartFile file(folder.file("a"));
+    file.append(std::vector<std::byte>(1 << 20));
+    ::kill(::getpid(), SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(files_in(folder), 0);
+}
+
+}  // namespace
+}  // namespace understudy::volume::testing

@@ -20,7 +20,9 @@ class SharedSegments {
   /// What one rank may have at most; pages are taken when they are first written, and kept.
   static constexpr std::size_t most_bytes = std::size_t(1) << 30;
 
-  /// Memory for the segments of one rank, which other processes find at /proc/PID/fd. Throws std::system_error.
+  /// Memory for the segments of one rank, which other processes find at /proc/PID/fd: of most_bytes, or less
+  /// where this process may have few addresses (RLIMIT_AS), as each rank maps the memory of all. Throws
+  /// std::system_error.
   static FileDescriptor make_memory();
 
   /// The memories of all ranks, by rank. Throws std::system_error.

@@ -2,6 +2,7 @@
 #include "compositor/exchange/shared_segments.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -61,6 +62,20 @@ TEST(SharedSegments, GivesNoMoreThanThereIsAndTakesPagesWhenTheyAreWritten) {
   const std::span<std::byte> segment = segments.segment(100'000);
   std::ranges::fill(segment, std::byte(1));
   EXPECT_LT(resident_bytes(memories[0]), 200'000U);
+}
+
+TEST(SharedSegments, AreSmallerWhereAProcessMayHaveFewAddresses) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  constexpr std::size_t addresses = std::size_t(1) << 32, of_a_rank = addresses / 64;
+  const rlimit few{addresses, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &few), 0);
+  const FileDescriptor small = SharedSegments::make_memory();
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
+  SharedSegments segments({&small, 1}, 0);
+  EXPECT_TRUE(segments.segment(of_a_rank + 1).empty());
+  EXPECT_EQ(segments.segment(of_a_rank).size(), of_a_rank);
+  EXPECT_THROW(segments.at(0, {of_a_rank - 10, 11}), RankLost);
 }
 
 TEST(SharedSegments, PlacesOutsideOfTheMemoryAreRefused) {

@@ -22,6 +22,7 @@ import blend  # noqa: E402
 import calls  # noqa: E402
 import exchange  # noqa: E402
 import frame  # noqa: E402
+import hierarchy  # noqa: E402
 import paraview_frames  # noqa: E402
 import ranks  # noqa: E402
 import raycast  # noqa: E402
@@ -33,7 +34,7 @@ import view  # noqa: E402
 
 BENCHMARKS = {"frame": frame.rows, "raycast": raycast.rows, "calls": calls.rows, "scaling": scaling.rows,
               "ranks": ranks.rows, "balance": balance.rows, "blend": blend.rows, "exchange": exchange.rows,
-              "paraview": paraview_frames.rows, "shares": shares.rows, "sort": sort.rows, "remote": remote.rows, "view": view.rows}
+              "paraview": paraview_frames.rows, "shares": shares.rows, "sort": sort.rows, "remote": remote.rows, "hierarchy": hierarchy.rows, "view": view.rows}
 
 INSTRUCTION_SETS = [("avx512f", "AVX-512"), ("avx2", "AVX2"), ("sse4_1", "SSE4"), ("asimd", "NEON")]  # best first
 

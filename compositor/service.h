@@ -47,12 +47,29 @@ class RequestRefused : public std::runtime_error {
 
 struct Rendered;  // rendered.h
 
-/// All functions but nodes() may throw ServiceLost and RequestRefused. Requests are answered one after the
-/// other; not for two threads at once.
-class RenderService {
+/// Images of volumes that are there. All functions but nodes() may throw ServiceLost and RequestRefused.
+/// Requests are answered one after the other; not for two threads at once.
+class ImageService {
  public:
-  virtual ~RenderService() = default;
+  virtual ~ImageService() = default;
 
+  /// The image of one request. Its volume must be complete, and have the version that the request names.
+  virtual Rendered render(const volume::RenderRequest& request) = 0;
+
+  /// What pixels of the request would show if its samples were taken ever more densely
+  /// (volume/pixel_integral.h): of as many of `pixels`, in their order, as can be integrated in
+  /// `most_ms` on the slowest node. For requests on steps, under `over` with a transfer function and a linear
+  /// filter; method, termination, surfaces and light are not looked at.
+  virtual std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest& request,
+                                                       std::span<const volume::Pixel> pixels,
+                                                       double most_ms) = 0;
+
+  /// How many ranks render; 0: this process.
+  virtual int nodes() const = 0;
+};
+
+class RenderService : public ImageService {
+ public:
   // Texels travel while their sender prepares the next: what is wrong with them may be said by a later call, by
   // end_volume() at the latest.
 
@@ -69,20 +86,6 @@ class RenderService {
   virtual void end_volume(volume::VolumeId id) = 0;
   /// Frees its texels on all ranks. An id that is not known is ignored.
   virtual void forget_volume(volume::VolumeId id) = 0;
-
-  /// The image of one request. Its volume must be complete, and have the version that the request names.
-  virtual Rendered render(const volume::RenderRequest& request) = 0;
-
-  /// What pixels of the request would show if its samples were taken ever more densely
-  /// (volume/pixel_integral.h): of as many of `pixels`, in their order, as can be integrated in
-  /// `most_ms` on the slowest node. For requests on steps, under `over` with a transfer function and a linear
-  /// filter; method, termination, surfaces and light are not looked at.
-  virtual std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest& request,
-                                                       std::span<const volume::Pixel> pixels,
-                                                       double most_ms) = 0;
-
-  /// How many ranks render; 0 for the embedded service.
-  virtual int nodes() const = 0;
 };
 
 /// Renders in this process, on all cores.

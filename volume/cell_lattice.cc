@@ -40,6 +40,17 @@ CellLattice cell_lattice(const VolumeDescription& volume) {
   return lattice;
 }
 
+TexelBox shown_cells(const VolumeDescription& volume) {
+  const TexelBox all = cell_lattice(volume).box();
+  if (!volume.part) return all;
+  if (is_empty(*volume.part) || !contains(all, *volume.part))
+    throw std::invalid_argument(
+        fmt::format("volume {}: its part, cells ({}, {}, {}) to ({}, {}, {}), is empty or none of it",
+                    volume.id, volume.part->low[0], volume.part->low[1], volume.part->low[2],
+                    volume.part->high[0], volume.part->high[1], volume.part->high[2]));
+  return *volume.part;
+}
+
 int lattice_texel(const VolumeDescription& volume, const CellLattice& lattice, int axis, int index) {
   const int texel = lattice.origin[axis] + index;
   if (joins_its_ends(volume, axis)) return (texel + volume.size[axis]) % volume.size[axis];

@@ -31,6 +31,10 @@ struct CellLattice {
 /// which are that texel. Throws std::invalid_argument when size or stored box make no sense.
 CellLattice cell_lattice(const VolumeDescription& volume);
 
+/// Of them, those that are shown: the volume's part, or all. Throws std::invalid_argument where the part is
+/// empty or lies outside.
+TexelBox shown_cells(const VolumeDescription& volume);
+
 /// The texel (in texture coordinates) behind lattice point `index` of `axis`, 0 <= index <= cells.
 int lattice_texel(const VolumeDescription& volume, const CellLattice& lattice, int axis, int index);
 

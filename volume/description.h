@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "volume/rgba.h"
 #include "volume/texel_box.h"
@@ -27,6 +28,9 @@ struct VolumeDescription {
   /// So many cells around its own each node holds beside them: for the second samples of segments and segments,
   /// and for gradients (see ghost_layer_needed()).
   int ghost_layer = 0;
+  /// The cells that are shown, of the lattice (volume/cell_lattice.h); without it all. Images of parts that
+  /// tile the lattice compose to that of the whole, as those of ranks do.
+  std::optional<TexelBox> part;
 
   bool operator==(const VolumeDescription&) const = default;
 };

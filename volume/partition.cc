@@ -71,18 +71,18 @@ int divide(Partition& partition, const TexelBox& cells, int first_rank, int rank
 }
 
 template <class Choose>
-Partition divided(const TexelBox& lattice, int ranks, const Choose& choose) {
+Partition divided(const TexelBox& cells, int ranks, const Choose& choose) {
   check_ranks(ranks);
   Partition partition;
   partition.ranks = ranks;
-  divide(partition, lattice, 0, ranks, choose);
+  divide(partition, cells, 0, ranks, choose);
   return partition;
 }
 
 }  // namespace
 
-std::vector<TexelBox> cut_boxes(const Partition& partition, const TexelBox& lattice) {
-  std::vector<TexelBox> cut(partition.splits.size(), lattice);
+std::vector<TexelBox> cut_boxes(const Partition& partition, const TexelBox& cells) {
+  std::vector<TexelBox> cut(partition.splits.size(), cells);
   for (std::size_t i = 0; i < cut.size(); ++i) {
     const Partition::Split& split = partition.splits[i];
     for (const bool high : {false, true}) {
@@ -115,9 +115,9 @@ std::vector<TexelBox> boxes(const Partition& partition, const VolumeDescription&
       *seen = true;
     }
 
-  const TexelBox lattice = cell_lattice(volume).box();
-  const std::vector<TexelBox> cut = cut_boxes(partition, lattice);
-  std::vector<TexelBox> result(std::size_t(partition.ranks), lattice);
+  const TexelBox shown = shown_cells(volume);
+  const std::vector<TexelBox> cut = cut_boxes(partition, shown);
+  std::vector<TexelBox> result(std::size_t(partition.ranks), shown);
   for (std::size_t i = 0; i < cut.size(); ++i) {
     const Partition::Split& split = partition.splits[i];
     if (split.axis < 0 || split.axis > 2 || split.cut < cut[i].low[split.axis] ||
@@ -141,7 +141,7 @@ Partition initial_partition(const VolumeDescription& volume, int ranks, Partitio
 
 Partition by_blocks(const VolumeDescription& volume, int ranks) {
   const TexelBox lattice = cell_lattice(volume).box();
-  return divided(lattice, ranks, [&](const TexelBox& cells, int, int here) {
+  return divided(shown_cells(volume), ranks, [&](const TexelBox& cells, int, int here) {
     const int axis = longest_axis(cells);
     return Cut{axis, even_cut(lattice, cells, axis, here / 2, here), here / 2};
   });
@@ -149,7 +149,7 @@ Partition by_blocks(const VolumeDescription& volume, int ranks) {
 
 std::array<int, 3> factors(const VolumeDescription& volume, int ranks) {
   check_ranks(ranks);
-  const TexelBox lattice = cell_lattice(volume).box();
+  const TexelBox shown = shown_cells(volume);
   std::array<int, 3> best{};
   double least = std::numeric_limits<double>::infinity();
   for (int x = 1; x <= ranks; ++x) {
@@ -158,7 +158,7 @@ std::array<int, 3> factors(const VolumeDescription& volume, int ranks) {
       if (ranks / x % y != 0) continue;
       const std::array<int, 3> candidate{x, y, ranks / x / y};
       double faces = 0;  // in faces of the volume, weighed by their areas
-      for (int k = 0; k < 3; ++k) faces += double(candidate[k] - 1) / extent(lattice, k);
+      for (int k = 0; k < 3; ++k) faces += double(candidate[k] - 1) / extent(shown, k);
       if (faces < least) {
         least = faces;
         best = candidate;
@@ -173,7 +173,7 @@ Partition by_factors(const VolumeDescription& volume, int ranks) {
   const std::array<int, 3> parts = factors(volume, ranks);
   // x is cut first, then y; so the rank's number within a segment of x says how far y has been cut.
   const int slice_segment = parts[1] * parts[2];
-  return divided(lattice, ranks, [&](const TexelBox& cells, int, int here) {
+  return divided(shown_cells(volume), ranks, [&](const TexelBox& cells, int, int here) {
     const int axis = here > slice_segment ? 0 : here > parts[2] ? 1 : 2;
     const int unit = axis == 0 ? slice_segment : axis == 1 ? parts[2] : 1;
     const int left = here / unit / 2;
@@ -206,7 +206,7 @@ std::optional<int> fair_cut(const CostSums& costs, const TexelBox& cells, int ax
 }
 
 Partition by_cost(const VolumeDescription& volume, int ranks, const CostSums& costs) {
-  if (!(cell_lattice(volume).box() == costs.costs().lattice()))
+  if (!(shown_cells(volume) == costs.costs().lattice()))
     throw std::invalid_argument("the costs are those of another volume: make them for this volume's lattice");
   return by_cost(ranks, costs);
 }

@@ -29,17 +29,17 @@ struct Partition {
   };
 
   int ranks = 1;
-  std::vector<Split> splits;  ///< the first one cuts the whole lattice; none: one rank
+  std::vector<Split> splits;  ///< the first one cuts all shown cells; none: one rank
 
   bool operator==(const Partition&) const = default;
 };
 
-/// The boxes of the ranks, which tile the lattice; some may be empty. Throws std::invalid_argument when a rank
-/// has no place in the tree or two, or a plane lies outside of what it cuts.
+/// The boxes of the ranks, which tile the shown cells; some may be empty. Throws std::invalid_argument when a
+/// rank has no place in the tree or two, or a plane lies outside of what it cuts.
 std::vector<TexelBox> boxes(const Partition& partition, const VolumeDescription& volume);
 
 /// The box that each split cuts, in the order of the splits.
-std::vector<TexelBox> cut_boxes(const Partition& partition, const TexelBox& lattice);
+std::vector<TexelBox> cut_boxes(const Partition& partition, const TexelBox& cells);
 
 /// How the members of a group divide a volume.
 enum class PartitionMethod : std::uint8_t {

@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,21 +19,12 @@
 #include "compositor/logging/log.h"
 #include "compositor/node/node.h"
 #include "compositor/service/backend_line.h"
+#include "compositor/service/client_limits.h"
 #include "volume/glsl/backend.h"
 #include "volume/glsl/brick_size.h"
 
 namespace understudy {
 namespace {
-
-/// What the kernel says could be had without swapping; where it does not say, nothing.
-std::size_t available_memory() {
-  std::ifstream file("/proc/meminfo");
-  for (std::string line; std::getline(file, line);) {
-    constexpr std::string_view name = "MemAvailable:";
-    if (line.starts_with(name)) return std::strtoull(line.c_str() + name.size(), nullptr, 10) << 10;
-  }
-  return 0;
-}
 
 /// For texels of one client on what counts as a machine: the ranks that share bricks with this one.
 std::uint64_t room_on_machine(const compositor::Communicator& communicator,
@@ -42,7 +32,7 @@ std::uint64_t room_on_machine(const compositor::Communicator& communicator,
   const std::vector<int> machines = communicator.machines();
   const auto sharing = std::uint64_t(std::ranges::count(machines, machines[std::size_t(communicator.rank())]));
   // Bricks take half as much again as texels.
-  const std::uint64_t available = available_memory() / 2 * sharing / std::uint64_t(neighbours);
+  const std::uint64_t available = compositor::available_memory() / 2 * sharing / std::uint64_t(neighbours);
   return std::min(available, limits.bytes_of_client * sharing);
 }
 
@@ -163,7 +153,7 @@ int run_rank(NodeOptions& options, int argc, char** argv) {
         std::fflush(stderr);
       },
       memory);
-  options.balance.memory_left = [&] { return available_memory() / std::size_t(neighbours); };
+  options.balance.memory_left = [&] { return compositor::available_memory() / std::size_t(neighbours); };
   options.balance.moved = [&](const MoveFigures& move) {
     if (communicator.rank() == 0) print_move(move);
   };

@@ -133,7 +133,8 @@ void Rebalancer::expect(std::uint64_t client, const std::function<volume::Render
   const BrickStore& bricks = renderer_.bricks(client, request);
   const TexelBox lattice = bricks.lattice().box();
   expected.volume = &volume_of({client, request.volume});
-  expected.due = is_due(*expected.volume, request);
+  // A part is shown once, and goes.
+  expected.due = !bricks.description().part && is_due(*expected.volume, request);
   if (!expected.due) return;
   expected.boxes = volume::boxes(renderer_.partition(client, request), bricks.description());
   BlockCosts& costs = expected.costs.emplace(lattice, cost_edge(lattice));

@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 namespace understudy::compositor {
 
@@ -53,6 +55,15 @@ std::uint64_t usable_memory() {
     return std::min(physical, control_group_limit());
   }();
   return found;
+}
+
+std::uint64_t available_memory() {
+  std::ifstream file("/proc/meminfo");
+  for (std::string line; std::getline(file, line);) {
+    constexpr std::string_view name = "MemAvailable:";
+    if (line.starts_with(name)) return std::strtoull(line.c_str() + name.size(), nullptr, 10) << 10;
+  }
+  return 0;
 }
 
 ClientLimits client_limits(int ranks, std::chrono::milliseconds image_time) {

@@ -19,6 +19,9 @@ struct ClientLimits {
 /// when this was first asked.
 std::uint64_t usable_memory();
 
+/// What the kernel says that the machine could give now without swapping; where it does not say, nothing.
+std::uint64_t available_memory();
+
 /// Of one of `ranks` ranks on this machine. Bricks take half as much again as the texels that they show.
 /// With a limit of time clients are pending clients to each other, and no one of them gets more than half.
 ClientLimits client_limits(int ranks, std::chrono::milliseconds image_time);

@@ -26,7 +26,7 @@ enum class LauncherMessage : std::uint16_t {
 };
 
 constexpr Protocol protocol_of(LauncherMessage) {
-  return {1, 19, std::uint16_t(LauncherMessage::last)};
+  return {1, 20, std::uint16_t(LauncherMessage::last)};
 }
 
 struct Hello {

@@ -30,6 +30,10 @@ std::vector<std::byte> encode(const VolumeDescription& volume) {
   for (const int value : volume.stored.low) out.integer(value);
   for (const int value : volume.stored.high) out.integer(value);
   out.integer(volume.ghost_layer);
+  out.integer(volume.part.has_value());
+  if (volume.part)
+    for (const std::array<int, 3>& corner : {volume.part->low, volume.part->high})
+      for (const int cell : corner) out.integer(cell);
   return out.bytes();
 }
 
@@ -49,6 +53,11 @@ VolumeDescription decode_volume(std::span<const std::byte> payload) {
     volume.stored.high[axis] =
         in.small(std::string("stored.high.") + x_y_z[axis], volume.stored.low[axis] + 1, volume.size[axis]);
   volume.ghost_layer = in.small("ghost_layer", 0, max_axis_texels);
+  if (in.flag("part")) {
+    volume.part.emplace();
+    for (std::array<int, 3>* corner : {&volume.part->low, &volume.part->high})
+      for (int& cell : *corner) cell = in.small("part", -1, max_axis_texels + 1);
+  }
   in.end();
   return volume;
 }

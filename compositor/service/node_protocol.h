@@ -41,7 +41,7 @@ enum class NodeMessage : std::uint16_t {
 };
 
 constexpr Protocol protocol_of(NodeMessage) {
-  return {2, 15, std::uint16_t(NodeMessage::last)};
+  return {2, 16, std::uint16_t(NodeMessage::last)};
 }
 
 struct Change {

@@ -19,6 +19,7 @@
 #include "compositor/service/time_limit.h"
 #include "volume/brick/brick_store.h"
 #include "volume/brick/histogram.h"
+#include "volume/cell_lattice.h"
 #include "volume/error_bound/error_bound.h"
 #include "volume/footprint.h"
 #include "volume/frame_counts.h"
@@ -111,8 +112,11 @@ auto refusing(Call call) {
   }
 }
 
+/// Of the texels that the ranks keep.
 std::uint64_t stored_bytes(const VolumeDescription& description) {
-  return texels_in(description.stored) * bytes_per_texel(description.type);
+  const TexelBox kept =
+      description.part ? BrickStore::texels_shown(description, shown_cells(description)) : description.stored;
+  return texels_in(kept) * bytes_per_texel(description.type);
 }
 
 /// What a rank has of the stored texels; of what ranks of one machine share, its part.
@@ -135,6 +139,7 @@ void keep_limits_of_one(const VolumeDescription& description) {
     throw RequestRefused(fmt::format(
         "volume {} of {} x {} x {} texels is over the limit of {} MiB a slice or {} GiB", description.id,
         stored[0], stored[1], stored[2], limits::max_slice_bytes >> 20, limits::max_volume_bytes >> 30));
+  refusing([&] { return shown_cells(description); });
 }
 
 /// The most samples that an image can have.
@@ -198,6 +203,8 @@ RankRenderer::Volume& RankRenderer::find_complete(std::uint64_t client, const Re
 Arrangement RankRenderer::arranged(const VolumeDescription& description) const {
   // What other volumes take of a machine; all ranks come to the same.
   SortSettings sort = sort_;
+  // A part is as large as the ranks together have room for.
+  if (description.part) sort.sort = Sort::last;
   for (const auto& [key, volume] : volumes_) {
     const VolumeDescription& held = volume->bricks.description();
     if (held.id == description.id) continue;

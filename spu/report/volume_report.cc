@@ -38,6 +38,8 @@ Json verified(const VolumeCounters& volume) {
   return json;
 }
 
+}  // namespace
+
 Json report_of(const BudgetCounters& budget) {
   if (!has_budget(budget)) return nullptr;
   const auto or_null = [](double value) { return value > 0 ? Json(value) : Json(nullptr); };
@@ -51,8 +53,6 @@ Json report_of(const BudgetCounters& budget) {
           {report_key::calibrations, budget.calibrations},
           {report_key::note, text_in(budget.note)}};
 }
-
-}  // namespace
 
 ReasonCounts counts_in(std::span<const ReasonCount> counted) {
   ReasonCounts reasons;

@@ -32,6 +32,8 @@ nlohmann::ordered_json report_of(const VolumeCounters& volume, std::int32_t pid)
 double verified_rms(const VolumeCounters& volume);
 
 bool has_budget(const BudgetCounters& budget);
+/// Null where there is none.
+nlohmann::ordered_json report_of(const BudgetCounters& budget);
 /// "error asked 0.0020, measured 0.0013", and how, or why not.
 std::string sentence_of(const BudgetCounters& budget);
 

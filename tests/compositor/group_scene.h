@@ -34,6 +34,14 @@ inline volume::RenderRequest some_request(const Texture& texture,
   return request;
 }
 
+/// Samples one texel apart.
+inline volume::RenderRequest request_on_steps(const Texture& texture) {
+  volume::RenderRequest request = some_request(texture);
+  request.steps.emplace();
+  request.steps->metric = {40, 0, 0, 0, 36, 0, 0, 0, 28};
+  return request;
+}
+
 /// In slice ranges of three slices.
 inline void upload(RenderService& service, const Texture& texture) {
   const volume::VolumeDescription& d = texture.description;

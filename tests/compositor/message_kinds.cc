@@ -31,6 +31,7 @@ VolumeDescription some_volume() {
   v.border = {0.1F, 0.2F, 0.3F, 0.4F};
   v.stored = {{1, 2, 3}, {60, 33, 17}};
   v.ghost_layer = 8;
+  v.part = {{8, 10, 3}, {40, 32, 16}};
   return v;
 }
 

@@ -32,13 +32,6 @@ class NodeGroupSort : public NodeGroupTest {
   }
 };
 
-volume::RenderRequest request_on_steps(const Texture& texture) {
-  volume::RenderRequest request = some_request(texture);
-  request.steps.emplace();
-  request.steps->metric = {40, 0, 0, 0, 36, 0, 0, 0, 28};
-  return request;
-}
-
 TEST(EstimatedCosts, AreWhatPartsOfAnImageTake) {
   constexpr double samples_per_ray = 14;
   RankRenderer renderer(0, 1);

@@ -57,12 +57,27 @@ TexelBox kept_cells(const VolumeDescription& volume, const CellLattice& lattice,
   return kept;
 }
 
+/// The blocks that meet `cells`, counted from the lattice's low corner.
+TexelBox blocks_of(const CellLattice& lattice, const TexelBox& cells) {
+  TexelBox blocks;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    blocks.low[axis] = (cells.low[axis] - lattice.origin[axis]) / block_cells;
+    blocks.high[axis] = (cells.high[axis] - lattice.origin[axis] + block_cells - 1) / block_cells;
+  }
+  return blocks;
+}
+
+/// Aligned to sixteen.
+std::size_t bytes_of_block(TexelType type) {
+  return (block_texels * bytes_per_texel(type) + 15) / 16 * 16;
+}
+
 }  // namespace
 
 BrickStore::BrickStore(const VolumeDescription& volume, const TexelBox& owned_cells)
     : volume_(volume), lattice_(cell_lattice(volume)), owned_(owned_cells) {
   channels_ = volume.type == TexelType::rgba8 ? 4 : 1;
-  block_bytes_ = (block_texels * bytes_per_texel(volume.type) + 15) / 16 * 16;
+  block_bytes_ = bytes_of_block(volume.type);
 
   const float unit = volume.type == TexelType::f32 ? 1.0F : volume.type == TexelType::u16 ? 65535.0F : 255.0F;
   for (int k = 0; k < 4; ++k) {
@@ -84,14 +99,10 @@ BrickStore::BrickStore(const VolumeDescription& volume, const TexelBox& owned_ce
   if (!any) return;
   shown_ = texels_shown(volume, owned_cells);
   slice_seen_.resize(std::size_t(shown_.high[2] - shown_.low[2]));
-  const TexelBox kept = kept_cells(volume, lattice_, owned_);
-  std::uint64_t count = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    first_block_[axis] = (kept.low[axis] - all.low[axis]) / block_cells;
-    const int end = (kept.high[axis] - all.low[axis] + block_cells - 1) / block_cells;
-    block_counts_[axis] = end - first_block_[axis];
-    count *= std::uint64_t(block_counts_[axis]);
-  }
+  const TexelBox held = blocks_of(lattice_, kept_cells(volume, lattice_, owned_));
+  first_block_ = held.low;
+  for (int axis = 0; axis < 3; ++axis) block_counts_[axis] = held.high[axis] - held.low[axis];
+  const std::size_t count = texels_in(held);
   if (count > max_blocks)
     throw std::invalid_argument(
         fmt::format("volume {}: {} blocks on one rank (at most {} are possible): divide it among more ranks",
@@ -471,6 +482,21 @@ std::size_t BrickStore::bytes() const {
                     blocks_.capacity() * sizeof(blocks_[0]) + ranges_.capacity() * sizeof(Range);
   for (const Layer& layer : layers_) sum += layer.texels.capacity();
   return sum;
+}
+
+std::size_t BrickStore::most_bytes(const VolumeDescription& volume, const TexelBox& owned_cells) {
+  if (is_empty(owned_cells)) return sizeof(BrickStore);
+  const CellLattice lattice = cell_lattice(volume);
+  const TexelBox blocks = blocks_of(lattice, kept_cells(volume, lattice, owned_cells));
+  const std::size_t count = texels_in(blocks);
+  const std::size_t in_layer = count / std::size_t(blocks.high[2] - blocks.low[2]);
+  const std::size_t channels = volume.type == TexelType::rgba8 ? 4 : 1;
+  const std::size_t of_block =
+      bytes_of_block(volume.type) + sizeof(const std::byte*) + channels * sizeof(Range) + sizeof(bool);
+  // A slice on the faces of blocks belongs to two layers, which are kept dense while their slices come.
+  constexpr std::size_t layers_at_once = 2;
+  return sizeof(BrickStore) + (count + blocks_per_chunk) * of_block +
+         layers_at_once * in_layer * block_texels * bytes_per_texel(volume.type);
 }
 
 }  // namespace understudy::volume

@@ -108,6 +108,8 @@ class BrickStore {
 
   /// Everything this store keeps, in bytes.
   std::size_t bytes() const;
+  /// No store with these cells ever keeps more, whatever its texels, while they come included.
+  static std::size_t most_bytes(const VolumeDescription& volume, const TexelBox& owned_cells);
 
   /// Infinite and huge values of a float field are brought into this range, so that no interpolation
   /// overflows.

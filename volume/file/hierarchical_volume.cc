@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <new>
 #include <set>
@@ -179,21 +180,24 @@ std::unique_ptr<HierarchicalVolume> open_hierarchical(const std::string& path, c
 
 namespace {
 
+/// Of the scalars between two.
+std::array<double, 2> values_between(const FileDescription& description, double low, double high) {
+  const double a = description.offset + description.scale * low;
+  const double b = description.offset + description.scale * high;
+  return {std::min(a, b), std::max(a, b)};
+}
+
 FileDescription description_of_level(const HierarchicalVolume& volume, int level, const std::string& path) {
   const LevelGrid& grid = volume.grid();
   if (level < 0 || level >= grid.levels())
     throw FileError(fmt::format("{}: has no level {}; its levels are 0 to {}", path, level, grid.levels() - 1));
   FileDescription description = volume.description();
+  const HierarchicalBlock& all = volume.block(0);
+  if (all.low <= all.high) description.values = values_between(description, all.low, all.high);
   if (level == 0) return description;
   LevelOfDetail& detail = description.detail.emplace();
   detail.level = level;
   detail.volume_size = description.size;
-  const HierarchicalBlock& all = volume.block(0);
-  const auto value_of = [&](double scalar) { return description.offset + description.scale * scalar; };
-  if (all.low <= all.high) {
-    const auto [least, greatest] = std::minmax({value_of(all.low), value_of(all.high)});
-    detail.values = {least, greatest};
-  }
   detail.error = volume.error_of_level(level) * std::abs(description.scale);
   description.size = grid.size(level);
   for (double& distance : description.spacing) distance *= double(1 << level);
@@ -209,6 +213,42 @@ class OneLevel : public VolumeFile {
     volume_->read_level(level_, box, scalars);
   }
   std::uint64_t bytes_read() const override { return volume_->bytes_read(); }
+
+  std::optional<std::array<double, 2>> values_in(const TexelBox& box) const override {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for_each_block(blocks_around(box), [&](const BlockPlace& place) {
+      const HierarchicalBlock& block = volume_->block(volume_->grid().number_of(level_, place));
+      if (block.low > block.high) return;
+      // A sample is as far from its scalar as coding has let it, here or where a coarser level has it from.
+      const double off = std::max(block.quantum / 2, volume_->header().max_error);
+      low = std::min(low, block.low - off);
+      high = std::max(high, block.high + off);
+    });
+    if (low > high) return std::array{1.0, 0.0};
+    return values_between(description(), low, high);
+  }
+
+  /// Whole blocks are decoded, with those of coarser levels that they are predicted from.
+  std::size_t memory_to_read(const TexelBox& box) const override {
+    const LevelGrid& grid = volume_->grid();
+    constexpr std::size_t edge = std::size_t(hierarchy_block_edge);
+    TexelBox samples = box;
+    samples.high[2] += hierarchy_block_edge;  // wherever they begin
+    std::size_t blocks = 0;
+    for (int level = level_; level < grid.levels(); ++level) {
+      const TexelBox whole = intersection(blocks_around(samples), {{0, 0, 0}, grid.blocks(level)});
+      blocks += texels_in(whole);
+      if (level == grid.coarsest()) break;
+      for (std::size_t k = 0; k < 3; ++k) {
+        samples.low[k] = whole.low[k] * hierarchy_block_edge;
+        samples.high[k] = std::min(whole.high[k] * hierarchy_block_edge, grid.size(level)[k]);
+      }
+      samples = coarser_samples_around(samples, grid.size(level + 1));
+    }
+    // And a quarter as many bytes while they are packed.
+    return blocks * edge * edge * edge * bytes_per_scalar(description().type) * 5 / 4;
+  }
 
  private:
   std::unique_ptr<HierarchicalVolume> volume_;

@@ -35,8 +35,7 @@ struct FileHints {
 /// What a coarser level of a hierarchical volume is of.
 struct LevelOfDetail {
   int level = 0;
-  std::array<int, 3> volume_size{};    ///< of the finest level
-  std::array<double, 2> values{0, 0};  ///< the volume's least and greatest
+  std::array<int, 3> volume_size{};  ///< of the finest level
   /// No value of the volume lies farther from what the level gives there by trilinear interpolation.
   double error = 0;
 };
@@ -49,6 +48,8 @@ struct FileDescription {
   /// A scalar s of the file means the value offset + scale * s.
   double scale = 1;
   double offset = 0;
+  /// The volume's least and greatest value, where its file tells them and there are any.
+  std::optional<std::array<double, 2>> values;
 };
 
 class VolumeFile {
@@ -63,6 +64,11 @@ class VolumeFile {
   virtual void read(const TexelBox& box, std::span<std::byte> scalars) = 0;
   /// What has been read of the file so far, headers included.
   virtual std::uint64_t bytes_read() const = 0;
+  /// Values between which those of `box` lie, as far as the file tells them without its scalars; low > high:
+  /// there are none.
+  virtual std::optional<std::array<double, 2>> values_in(const TexelBox& /*box*/) const { return std::nullopt; }
+  /// The memory that read() takes at most for a box as this one anywhere behind it along z, beside `scalars`.
+  virtual std::size_t memory_to_read(const TexelBox& /*box*/) const { return 0; }
 
  private:
   FileDescription description_;

@@ -53,6 +53,12 @@ void add_loading_nodes(CLI::App& subcommand, LoadingNodes& arguments) {
   add_exchange_options(subcommand, arguments.choices);
 }
 
+bool ranks_are_here(const LoadingNodes& arguments) {
+  if (!arguments.connect.empty()) return false;
+  const Placement placement = placement_of({arguments.nodes, arguments.hostfile}, current_environment());
+  return placement.ranks == 0 || placement.launch == Launch::this_machine;
+}
+
 std::vector<std::string> with_loading_nodes(
     const LoadingNodes& arguments,
     const std::function<void(const ServiceMaker& make, const std::stop_token& stop)>& job) {

@@ -27,6 +27,9 @@ struct LoadingNodes {
 
 void add_loading_nodes(CLI::App& subcommand, LoadingNodes& arguments);
 
+/// Whether all its ranks run on this machine. Throws std::runtime_error where there can be no nodes.
+bool ranks_are_here(const LoadingNodes& arguments);
+
 /// Makes a service that holds no volume yet; again, where the one before was lost. Throws ServiceLost.
 using ServiceMaker = std::function<std::unique_ptr<compositor::LoadingService>()>;
 

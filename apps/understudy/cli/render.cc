@@ -12,15 +12,21 @@
 #include <string>
 #include <vector>
 
+#include "apps/understudy/cli/budget_options.h"
 #include "apps/understudy/cli/loading_nodes.h"
+#include "apps/understudy/cli/memory_option.h"
 #include "apps/understudy/cli/output_file.h"
 #include "apps/understudy/cli/render_report.h"
+#include "apps/understudy/cli/scene_frames.h"
 #include "apps/understudy/file_scene/file_scene.h"
 #include "apps/understudy/file_scene/load_progress.h"
 #include "apps/understudy/images/image.h"
 #include "apps/understudy/study/median.h"
 #include "compositor/logging/log.h"
+#include "compositor/passes/pass_plan.h"
+#include "compositor/passes/pass_renderer.h"
 #include "compositor/rendered.h"
+#include "volume/cell_lattice.h"
 #include "volume/image.h"
 
 namespace understudy::launcher {
@@ -28,7 +34,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using compositor::LoadingService;
-using compositor::RankLoad;
 
 constexpr int max_frames = 10000;
 
@@ -39,6 +44,8 @@ struct RenderArguments {
   std::string out;
   std::string report;
   std::string save_float;
+  std::string memory = "auto";
+  BudgetArguments budget;
   bool progress = false;
 };
 
@@ -64,6 +71,33 @@ BoundFigures bound_figures(const volume::ImageView& image) {
   return {*std::ranges::max_element(bounds), median(bounds), 0};
 }
 
+/// How a volume is shown within the ranks' memory: what that holds, in one part.
+struct Passes {
+  volume::Partition parts;
+  compositor::LoadRequest load;
+};
+
+Passes passes_of(const volume::VolumeFile& file, const FileScene& scene, const RenderArguments& arguments,
+                 int ranks) {
+  VolumeMemory memory = memory_for_volume(arguments.memory, ranks, ranks_are_here(arguments.nodes),
+                                          std::size_t(scene.image.width) * std::size_t(scene.image.height));
+  // Bounds keep 28 bytes for each 8 cells, beside the 12 that their bricks take at least.
+  if (scene.image.bounds_error) memory.bytes /= 4;
+  Passes passes{{}, scene.load};
+  const volume::VolumeDescription& volume = scene.load.volume;
+  auto parts = compositor::passes_within(volume, file, ranks, memory.bytes);
+  if (!parts)
+    throw std::invalid_argument(
+        fmt::format("no part of this volume fits into {} MiB for each rank; give more --memory, or more nodes",
+                    memory.bytes >> 20U));
+  passes.parts = *std::move(parts);
+  // A part is divided among all ranks; a whole volume one of them may keep for the others.
+  if (memory.of_each_process && passes.parts.ranks == 1 && ranks > 1 &&
+      compositor::bytes_of_rank(volume, file, 1) > memory.bytes)
+    passes.load.volume.part = volume::shown_cells(volume);
+  return passes;
+}
+
 RenderFigures render_with(LoadingService& service, const FileScene& scene, const RenderArguments& arguments) {
   RenderFigures figures;
   figures.file = scene.load.file;
@@ -75,30 +109,33 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
   figures.nodes = service.nodes();
 
   auto start = Clock::now();
-  figures.ranks = service.begin_load(scene.load);
+  const auto file = volume::open_volume(scene.load.file, scene.load.hints);
+  const Passes passes = passes_of(*file, scene, arguments, std::max(1, service.nodes()));
   figures.open_ms = milliseconds_since(start);
   start = Clock::now();
-  {
-    using Style = LoadProgress::Style;
-    LoadProgress progress(arguments.progress             ? Style::lines
-                          : ::isatty(STDERR_FILENO) != 0 ? Style::bar
-                                                         : Style::silent);
-    progress.show(figures.ranks);
-    while (!std::ranges::all_of(figures.ranks, &RankLoad::done)) {
-      figures.ranks = service.continue_load(scene.load.volume.id);
-      progress.show(figures.ranks);
-    }
-  }
+  using Style = LoadProgress::Style;
+  LoadProgress progress(arguments.progress             ? Style::lines
+                        : ::isatty(STDERR_FILENO) != 0 ? Style::bar
+                                                       : Style::silent);
+  compositor::PassRenderer renderer(
+      service, *file, passes.load, passes.parts,
+      [&](int part, int of, std::span<const compositor::RankLoad> ranks) { progress.show(part, of, ranks); });
+  renderer.load(unclassified_request(scene, scene.image));
+  figures.ranks = renderer.ranks();
   figures.load_ms = milliseconds_since(start);
 
-  figures.request = request_of(scene, scene.image, texel_figures(figures.ranks));
-  volume::RenderRequest bounding = figures.request;
+  const volume::RenderRequest bounding = request_of(scene, scene.image, texel_figures(figures.ranks));
+  figures.request = bounding;
   figures.request.bound_of.reset();
+  const volume::RenderRequest own = figures.request;
+  const spu::BudgetAsked asked = budget_asked(arguments.budget, arguments.nodes.choices.pixels == "float");
+  const bool in_parts = passes.parts.ranks > 1;
+  if (in_parts && asked.ms > 0 && asked.error == 0)
+    throw std::invalid_argument("--time is for volumes that memory holds: give more --memory, or --error");
+  SceneFrames frames(renderer, scene.load.volume, own, asked);
+  if (in_parts) frames.look_no_more();
   for (int frame = 0; frame < arguments.frames; ++frame) {
-    start = Clock::now();
-    const compositor::Rendered rendered = service.render(figures.request);
-    figures.frame_ms.push_back(milliseconds_since(start));
-    figures.counts = rendered.counts;
+    const compositor::Rendered rendered = frames.next(figures);
     if (frame + 1 < arguments.frames) continue;
     write_png(arguments.out, image_of(rendered.image, figures.request.window, false));
     if (!arguments.save_float.empty())
@@ -106,14 +143,17 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
   }
   if (bounding.bound_of) {
     start = Clock::now();
-    figures.bound = bound_figures(service.render(bounding).image);
+    figures.bound = bound_figures(renderer.render(bounding).image);
     figures.bound->time_ms = milliseconds_since(start);
   }
-  figures.ranks = service.continue_load(scene.load.volume.id);
+  figures.ranks = renderer.ranks();
+  figures.passes = renderer.figures();
   return figures;
 }
 
-int render(const RenderArguments& arguments) {
+int render(RenderArguments arguments) {
+  arguments.scene.samples_are_free =
+      budget_asked(arguments.budget, arguments.nodes.choices.pixels == "float").any();
   const FileScene scene = scene_of(arguments.scene);
   RenderFigures figures;
   std::vector<std::string> backends;
@@ -139,6 +179,8 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* render_command = app.add_subcommand("render", "an image of a volume in a file, without a viewer");
   add_scene_options(*render_command, arguments->scene);
   add_loading_nodes(*render_command, arguments->nodes);
+  add_memory_option(*render_command, arguments->memory,
+                    "what each rank may take: of larger volumes one part after the other is loaded and shown");
   render_command->add_option("--out", arguments->out, "the image, over black")
       ->type_name("P.png")
       ->required()
@@ -157,8 +199,12 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
   render_command->add_option("--report", arguments->report, "figures as JSON")
       ->type_name("F.json")
       ->check(can_be_written());
-  render_command->add_flag("--error-bound", arguments->scene.error_bound,
-                           "say by how much any pixel may be wrong, certified");
+  add_budget_options(*render_command, arguments->budget);
+  render_command
+      ->add_flag("--error-bound", arguments->scene.error_bound,
+                 "say by how much any pixel may be wrong, certified")
+      ->excludes(render_command->get_option("--error"))
+      ->excludes(render_command->get_option("--time"));
   render_command->add_option("--frames", arguments->frames, "render as often, for the time")
       ->check(CLI::Range(1, max_frames))
       ->capture_default_str();

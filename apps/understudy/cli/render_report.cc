@@ -13,6 +13,7 @@
 #include "apps/understudy/file_scene/file_scene.h"
 #include "apps/understudy/processes/origin.h"
 #include "apps/understudy/study/median.h"
+#include "spu/report/volume_report.h"
 
 namespace understudy::launcher {
 namespace {
@@ -87,6 +88,12 @@ std::string summary_text(const RenderFigures& figures) {
                       over_ranks(figures.ranks, &compositor::RankLoad::bytes_read),
                       over_ranks(figures.ranks, &compositor::RankLoad::brick_bytes),
                       over_ranks(figures.ranks, &compositor::RankLoad::peak_bytes));
+  if (const compositor::PassFigures& passes = figures.passes; passes.passes > 1)
+    text += fmt::format(
+        "understudy: shown in {} parts within the memory that each rank may take: {} times one was loaded; "
+        "left "
+        "out: {} in which nothing is visible, {} behind what is opaque\n",
+        passes.passes, passes.loads, passes.empty, passes.hidden);
   if (const auto& detail = figures.description.detail)
     text += fmt::format("understudy: level {} of a volume of {} x {} x {}: {}\n", detail->level,
                         detail->volume_size[0], detail->volume_size[1], detail->volume_size[2],
@@ -99,6 +106,8 @@ std::string summary_text(const RenderFigures& figures) {
         "pixels "
         "{:.3g}; bounding took {:.0f} ms\n",
         figures.bound->greatest, figures.bound->median, figures.bound->time_ms);
+  if (spu::has_budget(figures.budget))
+    text += fmt::format("understudy: {}\n", spu::sentence_of(figures.budget));
   const volume::TexelFigures texels = texel_figures(figures.ranks);
   if (texels.largest_error > 0 || texels.not_numbers > 0)
     text += fmt::format(
@@ -133,6 +142,12 @@ void write_render_report(const std::string& path, const RenderFigures& figures) 
                        {"processors", counts.processor_ms},
                        {"composite", counts.composite_ms}};
   report["frames_ms"] = figures.frame_ms;
+  report["passes"] = {{"parts", figures.passes.passes},
+                      {"loads", figures.passes.loads},
+                      {"empty", figures.passes.empty},
+                      {"hidden", figures.passes.hidden},
+                      {"load_ms", figures.passes.load_ms}};
+  report["budget"] = spu::report_of(figures.budget);
   report["error_bound"] = nullptr;
   if (figures.bound)
     report["error_bound"] = {{"greatest", figures.bound->greatest},

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "compositor/passes/pass_renderer.h"
 #include "compositor/service/loading_service.h"
+#include "spu/report/counters.h"
 #include "volume/file/texel_stream.h"
 #include "volume/frame_counts.h"
 #include "volume/request.h"
@@ -36,6 +38,8 @@ struct RenderFigures {
   std::optional<BoundFigures> bound;        ///< of the last frame, where it was asked for
   volume::FrameCounts counts;               ///< of the last frame
   std::vector<compositor::RankLoad> ranks;  ///< after the last frame
+  compositor::PassFigures passes;
+  spu::BudgetCounters budget{};  ///< where an error or a time was asked for
 };
 
 std::string summary_text(const RenderFigures& figures);

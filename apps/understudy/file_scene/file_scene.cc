@@ -12,6 +12,7 @@
 #include "apps/understudy/file_scene/control_points_file.h"
 #include "apps/understudy/file_scene/number_list.h"
 #include "apps/understudy/images/image.h"
+#include "spu/volume/budget/budget.h"
 #include "volume/file/synthetic.h"
 #include "volume/hierarchy/level_request.h"
 #include "volume/matrix.h"
@@ -139,6 +140,10 @@ FileScene scene_of(const SceneArguments& arguments, const volume::FileDescriptio
   // Segments, gradients and bounds reach beyond a node's own cells, by no more than the volume has.
   scene.load.volume.ghost_layer =
       volume::ghost_layer_needed(scene.load.volume, unclassified_request(scene, scene.image));
+  if (arguments.samples_are_free)
+    scene.load.volume.ghost_layer =
+        std::max(scene.load.volume.ghost_layer,
+                 std::min(spu::budget_ghost_layer, *std::ranges::min_element(scene.file.size)));
   if (scene.load.volume.ghost_layer > *std::ranges::max_element(scene.file.size))
     throw std::invalid_argument(
         fmt::format("a step of {} voxels is longer than the volume; give a smaller one", arguments.step));
@@ -176,10 +181,8 @@ std::invalid_argument no_bound() {
 volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& image,
                                  const volume::TexelFigures& values) {
   volume::RenderRequest request = unclassified_request(scene, image);
-  // A level of detail may miss the volume's extremes, which colours go by.
-  const auto& detail = scene.file.detail;
-  const double least = detail ? detail->values[0] : values.low;
-  const double greatest = detail ? detail->values[1] : values.high;
+  // A level of detail, or scalars that were rounded, may miss the volume's extremes, which colours go by.
+  const auto [least, greatest] = scene.file.values.value_or(std::array{values.low, values.high});
   // A volume of one value has no range: the tables' least value is that one.
   const double low = least <= greatest ? least : 0.0;
   const double high = least < greatest ? greatest : low + 1;

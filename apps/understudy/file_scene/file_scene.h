@@ -32,6 +32,7 @@ struct SceneArguments {
   std::string range;
   int level = 0;
   bool error_bound = false;
+  bool samples_are_free = false;  ///< a budget says where they lie
 };
 
 void add_scene_options(CLI::App& subcommand, SceneArguments& arguments);

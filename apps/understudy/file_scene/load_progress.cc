@@ -21,11 +21,18 @@ std::string progress_text(std::span<const compositor::RankLoad> ranks) {
                      bar_width, bytes >> 20U, ranks.size(), ranks.size() == 1 ? "rank" : "ranks");
 }
 
-void LoadProgress::show(std::span<const compositor::RankLoad> ranks) {
+std::string progress_text(int part, int parts, std::span<const compositor::RankLoad> ranks) {
+  if (parts == 1) return progress_text(ranks);
+  return fmt::format("part {} of {}: {}", part + 1, parts, progress_text(ranks));
+}
+
+void LoadProgress::show(int part, int parts, std::span<const compositor::RankLoad> ranks) {
   if (style_ == Style::silent) return;
-  std::string text = progress_text(ranks);
+  std::string text = progress_text(part, parts, ranks);
   if (style_ == Style::bar) {
-    fmt::print(stderr, "\runderstudy: {}", text);
+    // What is shorter than before leaves nothing of it.
+    fmt::print(stderr, "\runderstudy: {:<{}}", text, shown_);
+    shown_ = text.size();
     drawn_ = true;
     return;
   }

@@ -11,6 +11,8 @@ namespace understudy::launcher {
 
 /// "loading  42 % [########            ] 110 MiB read by 4 ranks"
 std::string progress_text(std::span<const compositor::RankLoad> ranks);
+/// The same of one of several parts: "part 2 of 5: loading …".
+std::string progress_text(int part, int parts, std::span<const compositor::RankLoad> ranks);
 
 class LoadProgress {
  public:
@@ -22,11 +24,14 @@ class LoadProgress {
   LoadProgress& operator=(const LoadProgress&) = delete;
   ~LoadProgress();
 
-  void show(std::span<const compositor::RankLoad> ranks);
+  void show(std::span<const compositor::RankLoad> ranks) { show(0, 1, ranks); }
+  /// Of part `part`, counted from 0, of `parts`.
+  void show(int part, int parts, std::span<const compositor::RankLoad> ranks);
 
  private:
   Style style_;
   bool drawn_ = false;
+  std::size_t shown_ = 0;  ///< characters
 };
 
 }  // namespace understudy::launcher

@@ -48,7 +48,7 @@ float termination_for(const BudgetAsked& asked) {
 }  // namespace
 
 std::optional<volume::RenderRequest> Budget::request(
-    compositor::RenderService& service, const volume::RenderRequest& own, const std::string& obstacle,
+    compositor::ImageService& service, const volume::RenderRequest& own, const std::string& obstacle,
     const volume::VolumeDescription& volume, std::uint64_t service_generation, BudgetCounters& counters) {
   counters.asked_error = asked_.error;
   counters.asked_ms = asked_.ms;
@@ -134,7 +134,7 @@ void Budget::use(std::size_t of_front) {
 }
 
 /// Looks where the image changes most with a finer setting: there it is wrong, if anywhere.
-void Budget::prove(compositor::RenderService& service) {
+void Budget::prove(compositor::ImageService& service) {
   const auto& front = calibration_.front;
   do {
     const compositor::Rendered beside = service.render(sampled_as(meaning_, next_finer().setting));
@@ -152,7 +152,7 @@ void Budget::prove(compositor::RenderService& service) {
 }
 
 /// Half floats between nodes, where they save time and what they round away is within the error.
-void Budget::try_halves(compositor::RenderService& service) {
+void Budget::try_halves(compositor::ImageService& service) {
   if (worst_ > room_when_proven * asked_.error) return;
   volume::RenderRequest request = sampled_as(meaning_, setting());
   std::array<double, 2> least{1e300, 1e300};
@@ -209,7 +209,7 @@ bool Budget::go_finer() {
   return true;
 }
 
-void Budget::look_at(compositor::RenderService& service, const volume::ImageView& image,
+void Budget::look_at(compositor::ImageService& service, const volume::ImageView& image,
                      std::optional<double> ms, BudgetCounters& counters) {
   const Clock::time_point now = Clock::now();
   const std::chrono::duration<double, std::milli> passed = now - looked_at_.value_or(now);

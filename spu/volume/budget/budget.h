@@ -16,7 +16,7 @@
 #include "volume/request.h"
 
 namespace understudy::compositor {
-class RenderService;
+class ImageService;
 }
 
 namespace understudy::spu {
@@ -41,14 +41,14 @@ class Budget {
   /// The request to render in place of the application's own; empty, with the reason in `counters`, where its
   /// samples must be its own: `obstacle` says so, or the request. May render and integrate on its own account.
   /// Throws as the service does.
-  std::optional<volume::RenderRequest> request(compositor::RenderService& service,
+  std::optional<volume::RenderRequest> request(compositor::ImageService& service,
                                                const volume::RenderRequest& own, const std::string& obstacle,
                                                const volume::VolumeDescription& volume,
                                                std::uint64_t service_generation, BudgetCounters& counters);
 
   /// Looks at the image of what request() gave last, which took `ms` if it was cast and not there already.
   /// Takes a fiftieth of the time that passes, and the time of casting where nothing was cast.
-  void look_at(compositor::RenderService& service, const volume::ImageView& image, std::optional<double> ms,
+  void look_at(compositor::ImageService& service, const volume::ImageView& image, std::optional<double> ms,
                BudgetCounters& counters);
 
  private:
@@ -65,8 +65,8 @@ class Budget {
 
   void choose();
   void use(std::size_t of_front);
-  void prove(compositor::RenderService& service);
-  void try_halves(compositor::RenderService& service);
+  void prove(compositor::ImageService& service);
+  void try_halves(compositor::ImageService& service);
   Setting setting() const;
   Measured next_finer() const;
   bool go_finer();

@@ -122,9 +122,8 @@ std::vector<Pixel> spread_over(const volume::Rect& rect, std::size_t first, std:
   return pixels;
 }
 
-std::vector<PixelIntegral> integrals_of(compositor::RenderService& service,
-                                        const volume::RenderRequest& request, std::span<const Pixel> pixels,
-                                        std::size_t at_least, double usual_ms) {
+std::vector<PixelIntegral> integrals_of(compositor::ImageService& service, const volume::RenderRequest& request,
+                                        std::span<const Pixel> pixels, std::size_t at_least, double usual_ms) {
   const auto start = Clock::now();
   std::vector<PixelIntegral> integrals;
   do {
@@ -147,7 +146,7 @@ double greatest_error(const ImageView& image, std::span<const Pixel> pixels,
   return greatest;
 }
 
-Calibration calibrate(compositor::RenderService& service, const Meaning& meaning,
+Calibration calibrate(compositor::ImageService& service, const Meaning& meaning,
                       const volume::VolumeDescription& volume, float termination, double enough) {
   const auto start = Clock::now();
   const volume::Rect seen = footprint(meaning.request, meaning.request.region);

@@ -11,7 +11,7 @@
 #include "volume/rect.h"
 
 namespace understudy::compositor {
-class RenderService;
+class ImageService;
 }
 namespace understudy::volume {
 struct ImageView;
@@ -35,7 +35,7 @@ struct Calibration {
 /// ones are not tried once images differ by less than `enough`; with 0 there is never enough, but time. Takes
 /// well under a second; on a slow or busy machine up to five, where they are what `enough` takes. Throws as the
 /// service does.
-Calibration calibrate(compositor::RenderService& service, const Meaning& meaning,
+Calibration calibrate(compositor::ImageService& service, const Meaning& meaning,
                       const volume::VolumeDescription& volume, float termination, double enough);
 
 /// The pixels of two images of one rectangle that differ most, worst first; at most `count`.
@@ -48,7 +48,7 @@ std::vector<volume::Pixel> spread_over(const volume::Rect& rect, std::size_t fir
 /// Of the first pixels, in order: as many as the nodes integrate in `usual_ms`, but `at_least` so many, which
 /// on a machine with other work may take longer. A budget is judged by few rays as it is: time must not make
 /// them fewer.
-std::vector<volume::PixelIntegral> integrals_of(compositor::RenderService& service,
+std::vector<volume::PixelIntegral> integrals_of(compositor::ImageService& service,
                                                 const volume::RenderRequest& request,
                                                 std::span<const volume::Pixel> pixels, std::size_t at_least,
                                                 double usual_ms);

@@ -3,6 +3,7 @@
 // that was allowed and within the errors that the table states.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <zlib.h>
 
 #include <bit>
 #include <cmath>
@@ -278,6 +279,77 @@ TEST(HierarchicalVolume, DamageIsFoundOut) {
   }
   std::printf("%d of %d mutants refused\n", refused, mutants);
   EXPECT_GT(refused, mutants * 9 / 10);
+}
+
+/// As who makes a file on purpose does.
+void renew_checksum(std::string& file, std::size_t from, std::size_t bytes) {
+  const auto sum = std::uint32_t(crc32(0, reinterpret_cast<const Bytef*>(file.data() + from), uInt(bytes)));
+  for (std::size_t i = 0; i < sizeof sum; ++i) file[from + bytes + i] = char(sum >> (8 * i) & 0xff);
+}
+
+TEST(HierarchicalVolume, WhatHasItsChecksumRenewedIsRefusedOrReadWithinItsMemory) {
+  const Size size{80, 70, 66};
+  const TemporaryFolder folder;
+  const std::string path = converted(folder, size, ScalarType::u16, random_scalars(size, ScalarType::u16, 3),
+                                     {.max_error = 4, .effort = 1});
+  std::ifstream in(path, std::ios::binary);
+  const std::string good{std::istreambuf_iterator<char>(in), {}};
+  const std::size_t table = std::size_t(blocks_begin(LevelGrid(size))) - hierarchical_header_bytes;
+  constexpr std::size_t sum = sizeof(std::uint32_t);
+  std::mt19937 random(10);
+  int refused = 0;
+  constexpr int mutants = 1000;
+  for (int i = 0; i < mutants; ++i) {
+    std::string bad = good;
+    const bool header = i % 2 == 0;
+    const std::size_t from = header ? 0 : hierarchical_header_bytes;
+    const std::size_t bytes = (header ? hierarchical_header_bytes : table) - sum;
+    // One byte, or the eight of a number.
+    const std::size_t at = from + random() % bytes;
+    const std::size_t count = i % 3 == 0 ? std::min<std::size_t>(8, from + bytes - at) : 1;
+    for (std::size_t k = 0; k < count; ++k) bad[at + k] = char(random());
+    renew_checksum(bad, from, bytes);
+    try {
+      const auto file = open_volume(folder.write("c_80x70x66.uvol", bad));
+      // A size that the header claims may be that of a volume that is not there.
+      TexelBox part = whole(*file);
+      for (int& n : part.high) n = std::min(n, 100);
+      read_box(*file, part);
+      file->values_in(part);
+      file->memory_to_read(part);
+    } catch (const FileError&) {
+      ++refused;
+    }
+  }
+  std::printf("%d of %d mutants refused\n", refused, mutants);
+  EXPECT_GT(refused, mutants / 4);
+}
+
+TEST(HierarchicalVolume, TellsBetweenWhichValuesABoxLies) {
+  const Size size{150, 131, 90};
+  const std::vector<float> values = smooth_field<float>(size, -3, 100);
+  const TemporaryFolder folder;
+  for (const double max_error : {0.0, 0.5}) {
+    const std::string path =
+        converted(folder, size, ScalarType::f32, bytes_of(values), {.max_error = max_error});
+    std::mt19937 random(4);
+    for (const int level : {0, 1, 2}) {
+      const auto file = open_volume(path, {.level = level});
+      ASSERT_TRUE(file->description().values);
+      EXPECT_EQ((*file->description().values)[0], double(*std::ranges::min_element(values)));
+      EXPECT_EQ((*file->description().values)[1], double(*std::ranges::max_element(values)));
+      for (int i = 0; i < 20; ++i) {
+        const TexelBox box = random_box(file->description().size, random);
+        const Bytes read = read_box(*file, box);
+        std::vector<float> got(read.size() / sizeof(float));
+        std::memcpy(got.data(), read.data(), read.size());
+        const auto told = file->values_in(box);
+        ASSERT_TRUE(told);
+        EXPECT_LE((*told)[0], double(*std::ranges::min_element(got)) + 1e-6);
+        EXPECT_GE((*told)[1], double(*std::ranges::max_element(got)) - 1e-6);
+      }
+    }
+  }
 }
 
 TEST(HierarchicalVolume, OfAnotherVersionIsRefusedByName) {

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compositor/passes/pass_renderer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include "compositor/blend.h"
+#include "compositor/service/limits.h"
+#include "volume/brick/brick_store.h"
+#include "volume/cell_lattice.h"
+#include "volume/file/volume_file.h"
+#include "volume/footprint.h"
+#include "volume/raycast/ray_caster.h"
+#include "volume/raycast/transfer_table.h"
+#include "volume/request.h"
+
+namespace understudy::compositor {
+
+using volume::BrickStore;
+using volume::RenderRequest;
+using volume::TexelBox;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// What ranks have of several parts, one after the other; of a part that was loaded before, what it took.
+void add_part(std::vector<RankLoad>& all, std::span<const RankLoad> part, bool again) {
+  all.resize(part.size());
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    RankLoad& rank = all[i];
+    const RankLoad& more = part[i];
+    rank.texels_done += more.texels_done;
+    rank.texels_in_all += more.texels_in_all;
+    rank.bytes_read += more.bytes_read;
+    rank.brick_bytes = std::max(rank.brick_bytes, more.brick_bytes);
+    rank.peak_bytes = std::max(rank.peak_bytes, more.peak_bytes);
+    if (more.low <= more.high) {
+      rank.low = rank.low <= rank.high ? std::min(rank.low, more.low) : more.low;
+      rank.high = std::max(rank.high, more.high);
+    }
+    rank.largest_error = std::max(rank.largest_error, more.largest_error);
+    if (!again) rank.not_numbers += more.not_numbers;
+    rank.cells = more.cells;
+  }
+}
+
+/// The texels of values between two, none where low > high: in units of the texel type, as rounding may leave
+/// them.
+BrickStore::Range texels_between(const volume::TexelMapping& mapping, const std::array<double, 2>& values) {
+  if (values[0] > values[1]) return {1, 0};
+  const double unit = volume::largest_texel(mapping.type);
+  const double a = mapping.normalised(values[0]) * unit, b = mapping.normalised(values[1]) * unit;
+  if (mapping.type == volume::TexelType::f32) return {float(std::min(a, b)), float(std::max(a, b))};
+  return {float(std::clamp(std::floor(std::min(a, b)), 0.0, unit)),
+          float(std::clamp(std::ceil(std::max(a, b)), 0.0, unit))};
+}
+
+}  // namespace
+
+PassRenderer::PassRenderer(LoadingService& service, const volume::VolumeFile& file, LoadRequest load,
+                           const volume::Partition& parts, Progress progress)
+    : service_(service),
+      file_(file),
+      load_(std::move(load)),
+      parts_(load_.volume, parts),
+      progress_(std::move(progress)),
+      values_(std::size_t(parts.ranks), Values{1, 0}),
+      known_(std::size_t(parts.ranks)) {
+  figures_.passes = parts.ranks;
+  ranks_.resize(std::size_t(std::max(1, service.nodes())));
+}
+
+void PassRenderer::load_part(int part) {
+  if (loaded_ == part) return;
+  loaded_.reset();
+  if (parts_.ranks() > 1) load_.volume.part = parts_.box(part);
+  std::vector<RankLoad> ranks = service_.begin_load(load_);
+  progress_(part, parts_.ranks(), ranks);
+  while (!std::ranges::all_of(ranks, &RankLoad::done)) {
+    ranks = service_.continue_load(load_.volume.id);
+    progress_(part, parts_.ranks(), ranks);
+  }
+  add_part(ranks_, ranks, known_[std::size_t(part)]);
+  known_[std::size_t(part)] = true;
+  loaded_ = part;
+  ++figures_.loads;
+  Values& values = values_[std::size_t(part)];
+  values = {1, 0};
+  for (const RankLoad& rank : ranks) {
+    if (rank.low > rank.high) continue;
+    values = values[0] > values[1] ? Values{rank.low, rank.high}
+                                   : Values{std::min(values[0], rank.low), std::max(values[1], rank.high)};
+  }
+}
+
+void PassRenderer::load_for_image(int part) {
+  const auto start = Clock::now();
+  load_part(part);
+  figures_.load_ms += milliseconds_since(start);
+}
+
+void PassRenderer::load(const RenderRequest& view) {
+  std::vector<int> order = parts_.visibility_order(view);
+  if (order.size() > 1 && file_.description().values) {
+    for (const int part : order)
+      if (const TexelBox& cells = parts_.box(part); !volume::is_empty(cells))
+        values_[std::size_t(part)] = file_.values_in(BrickStore::texels_shown(load_.volume, cells))
+                                         .value_or(*file_.description().values);
+    return;
+  }
+  std::ranges::reverse(order);
+  for (const int part : order)
+    if (!volume::is_empty(parts_.box(part))) load_part(part);
+}
+
+bool PassRenderer::may_show(const RenderRequest& request, int part) const {
+  const auto* const function = std::get_if<volume::TransferFunction>(&request.classification);
+  if (function == nullptr || request.bound_of) return true;
+  const volume::TexelMapping mapping = volume::mapping_of(file_.description(), load_.texels);
+  BrickStore::Range texels = texels_between(mapping, values_[std::size_t(part)]);
+  const volume::ScalarType type = file_.description().type;
+  const bool floats = type == volume::ScalarType::f32 || type == volume::ScalarType::f64;
+  if (floats && mapping.type != volume::TexelType::f32)  // not-a-numbers become the least integer
+    texels = {0, texels.low <= texels.high ? texels.high : 0};
+  // The least value of a sample is shown even where it is 0.
+  if (request.op == volume::Operator::min) return texels.low <= texels.high;
+  const volume::TransferTable table(*function, mapping.type, volume::neutral_value(request.op));
+  const double unit = volume::largest_texel(mapping.type);
+  return table.shows(texels) || std::ranges::any_of(request.surfaces, [&](const volume::Surface& surface) {
+           return texels.low <= surface.value * unit && surface.value * unit <= texels.high;
+         });
+}
+
+volume::Rect PassRenderer::open_pixels(const RenderRequest& request, int part) const {
+  const volume::Rect footprint =
+      intersection(volume::footprint(request, load_.volume, parts_.box(part)), image_.rect);
+  const bool covers = request.op == volume::Operator::over || request.op == volume::Operator::first_hit;
+  if (!covers || request.bound_of) return footprint;
+  const float least = volume::least_transparency(request);
+  const auto is_open = [&](const float* pixel) { return 1 - pixel[3] >= least; };
+  volume::Rect open;
+  for (int y = footprint.y; y < footprint.y + footprint.height; ++y)
+    for (int x = footprint.x; x < footprint.x + footprint.width; ++x)
+      if (is_open(image_.at(x, y))) open = bounding(open, {x, y, 1, 1});
+  return open;
+}
+
+Rendered PassRenderer::render_parts(const RenderRequest& request) {
+  if (request.opacity_limit < 1)
+    throw RequestRefused(
+        "rays that end where they are opaque have to be cast whole: give more memory or nodes");
+  volume::VolumeDescription whole = load_.volume;
+  whole.part.reset();
+  image_ = volume::Image(volume::footprint(request, whole, volume::shown_cells(whole)));
+  std::ranges::fill(image_.rgba, volume::neutral_value(request.op));
+  Rendered rendered;
+  for (RankLoad& rank : ranks_) rank.image_ms = rank.image_processor_ms = 0, rank.image_samples = 0;
+  for (const int part : parts_.visibility_order(request)) {
+    if (volume::is_empty(parts_.box(part)) || !may_show(request, part)) {
+      ++figures_.empty;
+      continue;
+    }
+    RenderRequest of_part = request;
+    of_part.window = open_pixels(request, part);
+    if (of_part.window.empty()) {
+      ++figures_.hidden;
+      continue;
+    }
+    load_for_image(part);
+    const Rendered shown = service_.render(of_part);
+    blend(request.op, image_, shown.image);
+    rendered.counts += shown.counts;
+    const std::vector<RankLoad> ranks = service_.continue_load(load_.volume.id);
+    for (std::size_t i = 0; i < ranks.size(); ++i) {
+      ranks_[i].peak_bytes = std::max(ranks_[i].peak_bytes, ranks[i].peak_bytes);
+      ranks_[i].brick_bytes = std::max(ranks_[i].brick_bytes, ranks[i].brick_bytes);
+      ranks_[i].image_ms += ranks[i].image_ms;
+      ranks_[i].image_processor_ms += ranks[i].image_processor_ms;
+      ranks_[i].image_samples += ranks[i].image_samples;
+    }
+  }
+  rendered.image = image_.view();
+  return rendered;
+}
+
+Rendered PassRenderer::render(const RenderRequest& request) {
+  return parts_.ranks() == 1 ? service_.render(request) : render_parts(request);
+}
+
+std::vector<volume::PixelIntegral> PassRenderer::integrals(const RenderRequest& request,
+                                                           std::span<const volume::Pixel> pixels,
+                                                           double most_ms) {
+  if (parts_.ranks() == 1) return service_.integrals(request, pixels, most_ms);
+  std::vector<volume::PixelIntegral> integrals(pixels.size());
+  for (const int part : parts_.visibility_order(request)) {
+    if (volume::is_empty(parts_.box(part)) || !may_show(request, part)) continue;
+    load_for_image(part);
+    for (std::size_t done = 0; done < pixels.size();) {
+      const std::vector<volume::PixelIntegral> behind =
+          service_.integrals(request, pixels.subspan(done), limits::max_integral_ms);
+      if (behind.empty()) return {};
+      for (std::size_t i = 0; i < behind.size(); ++i) {
+        volume::PixelIntegral& front = integrals[done + i];
+        const double clear = 1 - front[3];
+        for (std::size_t k = 0; k < front.size(); ++k) front[k] += clear * behind[i][k];
+      }
+      done += behind.size();
+    }
+  }
+  return integrals;
+}
+
+std::vector<RankLoad> PassRenderer::ranks() {
+  return parts_.ranks() == 1 ? service_.continue_load(load_.volume.id) : ranks_;
+}
+
+}  // namespace understudy::compositor

@@ -13,6 +13,8 @@
 #include "apps/understudy/file_scene/number_list.h"
 #include "apps/understudy/images/image.h"
 #include "spu/volume/budget/budget.h"
+#include "volume/file/file_error.h"
+#include "volume/file/series.h"
 #include "volume/file/synthetic.h"
 #include "volume/hierarchy/level_request.h"
 #include "volume/matrix.h"
@@ -58,10 +60,16 @@ ImageSettings image_of(const SceneArguments& arguments) {
 void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
   subcommand
       .add_option(
-          "VOLUME", arguments.volume,
+          "VOLUME", arguments.volumes,
           "raw (size and type in its name: head_256x256x113_int16be.raw.gz), NRRD, NIfTI, VTI or UVOL, or "
-          "synthetic:XxYxZ[:u8|u16|f32[:shells|lobes|gyroid]]")
+          "synthetic:XxYxZ[:u8|u16|f32[:shells|lobes|gyroid]]; several, or a pattern ('step_*.vti'), are the "
+          "time steps of a series")
       ->required();
+  subcommand
+      .add_option("--time-step", arguments.time_step,
+                  "of a series: which of them is shown first, counted from 0")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   subcommand
       .add_option(
           "--transfer-function,--tf", arguments.transfer_function,
@@ -102,15 +110,61 @@ volume::Vec3 FileScene::voxel() const {
   return volume::scale(file.spacing, file.detail ? 1 / double(1 << file.detail->level) : 1.0);
 }
 
+compositor::LoadRequest FileScene::load_of(int step) const {
+  compositor::LoadRequest request = load;
+  request.file = series.at(std::size_t(step));
+  request.volume.id = volume_id + volume::VolumeId(step);
+  return request;
+}
+
+namespace {
+
+/// What the first file is, with the values of all of them; they have one size, type and spacing.
+volume::FileDescription described_series(const std::vector<std::string>& files,
+                                         const volume::FileHints& hints) {
+  volume::FileDescription first;
+  for (const std::string& file : files) {
+    const volume::FileDescription one = volume::open_volume(file, hints)->description();
+    if (&file == &files.front()) {
+      first = one;
+      continue;
+    }
+    if (one.size != first.size || one.type != first.type)
+      throw volume::FileError(
+          fmt::format("{}: a time step of {} x {} x {} of {}, where {} is of {} x {} x {} of {}; give steps of "
+                      "one size and type",
+                      file, one.size[0], one.size[1], one.size[2], volume::name_of(one.type), files.front(),
+                      first.size[0], first.size[1], first.size[2], volume::name_of(first.type)));
+    if (one.scale != first.scale || one.offset != first.offset)
+      throw volume::FileError(
+          fmt::format("{}: its scalars mean other values than those of {}; give steps with one scale", file,
+                      files.front()));
+    if (first.detail && one.detail) first.detail->error = std::max(first.detail->error, one.detail->error);
+    if (first.values && one.values)
+      first.values = {std::min((*first.values)[0], (*one.values)[0]),
+                      std::max((*first.values)[1], (*one.values)[1])};
+    else
+      first.values.reset();
+  }
+  return first;
+}
+
+}  // namespace
+
 FileScene scene_of(const SceneArguments& arguments) {
-  const std::string file = volume::is_synthetic(arguments.volume)
-                               ? arguments.volume
-                               : std::filesystem::absolute(arguments.volume).string();
+  std::vector<std::string> files = volume::files_of_series(arguments.volumes);
+  for (std::string& file : files)
+    if (!volume::is_synthetic(file)) file = std::filesystem::absolute(file).string();
+  if (std::size_t(arguments.time_step) >= files.size())
+    throw std::invalid_argument(fmt::format("there is no time step {}; there are {}, counted from 0",
+                                            arguments.time_step, files.size()));
   volume::FileHints hints = file_hints(arguments.raw);
   hints.level = arguments.level;
-  FileScene scene = scene_of(arguments, volume::open_volume(file, hints)->description());
-  scene.load.file = file;
+  FileScene scene = scene_of(arguments, described_series(files, hints));
+  scene.load.file = files[std::size_t(arguments.time_step)];
   scene.load.hints = hints;
+  scene.series = std::move(files);
+  scene.time_step = arguments.time_step;
   return scene;
 }
 

@@ -19,7 +19,8 @@
 namespace understudy::launcher {
 
 struct SceneArguments {
-  std::string volume;
+  std::vector<std::string> volumes;  ///< several: time steps
+  int time_step = 0;                 ///< of them, counted from 0
   ShadingArguments shading;
   std::string transfer_function = "grey";
   std::string camera = "30,20,4";
@@ -50,7 +51,9 @@ struct ImageSettings {
 };
 
 struct FileScene {
-  compositor::LoadRequest load;
+  compositor::LoadRequest load;     ///< of the time step that is shown first
+  std::vector<std::string> series;  ///< the files of all time steps
+  int time_step = 0;                ///< whose file `load` names
   volume::FileDescription file;
   volume::TexelMapping mapping;
   ImageSettings image;
@@ -61,6 +64,8 @@ struct FileScene {
   std::array<int, 3> volume_size() const { return file.detail ? file.detail->volume_size : file.size; }
   /// Between the volume's own scalars.
   volume::Vec3 voxel() const;
+  /// Of any time step, as a volume beside the others.
+  compositor::LoadRequest load_of(int step) const;
 };
 
 /// Everything that can be known to be wrong before a byte of the volume is read. The volume's ghost layer is

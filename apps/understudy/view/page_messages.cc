@@ -93,6 +93,8 @@ std::string volume_message(const ShownVolume& volume, const ViewState& state) {
        {"surfaces", surfaces},
        {"light", state.image().shading.light.has_value()},
        {"step", state.image().step},
+       {"time_steps", scene.series.size()},
+       {"time_step", state.time_step()},
        {"camera", json_of(state.camera())},
        {"nodes", volume.nodes()}});
 }
@@ -128,6 +130,7 @@ std::vector<std::byte> image_message(const ViewState& state, const ShownVolume::
               {"still", state.still()},
               {"width", drawn.image.width},
               {"height", drawn.image.height},
+              {"time_step", state.time_step()},
               {"format", state.lossless() ? "png" : "jpeg"},
               {"camera", json_of(state.camera())},
               {"matrix", drawn.request.texture_to_clip},

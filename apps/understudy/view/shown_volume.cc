@@ -27,14 +27,15 @@ bool has_integral(const volume::RenderRequest& request) {
 
 void ShownVolume::load(const std::function<void(const std::vector<compositor::RankLoad>&)>& progress) {
   image_ = {};  // belongs to the service
+  steps_.reset();
   service_.reset();
   service_ = make_();
-  std::vector<compositor::RankLoad> ranks = service_->begin_load(scene_.load);
-  progress(ranks);
-  while (!std::ranges::all_of(ranks, &compositor::RankLoad::done)) {
-    ranks = service_->continue_load(scene_.load.volume.id);
-    progress(ranks);
-  }
+  steps_.emplace(*service_, scene_, memory_(std::max(1, service_->nodes())));
+  std::vector<compositor::RankLoad> ranks;
+  steps_->show(scene_.time_step, [&](const std::vector<compositor::RankLoad>& now) {
+    ranks = now;
+    progress(now);
+  });
   values_ = texel_figures(ranks);
   histogram_ = measured_histogram();
 }
@@ -57,13 +58,18 @@ ShownVolume::Histogram ShownVolume::measured_histogram() {
   const double a = mapping.normalised(low), b = mapping.normalised(high);
   result.low = low;
   result.high = high;
-  result.counts = service_->histogram(scene_.load.volume.id, {std::min(a, b), std::max(a, b), count});
+  result.counts = service_->histogram(steps_->shown_load().volume.id, {std::min(a, b), std::max(a, b), count});
   if (a > b) std::ranges::reverse(result.counts);  // texels fall where values rise
   return result;
 }
 
 ShownVolume::Drawn ShownVolume::draw(const ViewState& state) {
+  if (state.time_step() != steps_->shown()) {
+    image_ = {};
+    steps_->show(state.time_step(), [](const std::vector<compositor::RankLoad>&) {});
+  }
   request_ = state.request(scene_, values_);
+  request_.volume = steps_->shown_load().volume.id;
   const Clock::time_point start = Clock::now();
   const compositor::Rendered rendered = service_->render(request_);
   image_ = rendered.image;
@@ -80,13 +86,20 @@ std::optional<ShownVolume::Exactness> ShownVolume::exactness() {
                    integrals.size()};
 }
 
+void ShownVolume::keep_image() {
+  if (image_.rgba.data() == kept_.data()) return;
+  kept_.assign(image_.rgba.begin(), image_.rgba.end());
+  image_.rgba = kept_;
+}
+
+bool ShownVolume::read_ahead() {
+  keep_image();
+  return steps_->read_ahead();
+}
+
 std::vector<compositor::RankLoad> ShownVolume::ranks() {
-  // The image of the service is valid until the next call but integrals().
-  if (image_.rgba.data() != kept_.data()) {
-    kept_.assign(image_.rgba.begin(), image_.rgba.end());
-    image_.rgba = kept_;
-  }
-  return service_->continue_load(scene_.load.volume.id);
+  keep_image();
+  return service_->continue_load(steps_->shown_load().volume.id);
 }
 
 }  // namespace understudy::launcher

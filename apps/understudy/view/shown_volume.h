@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The volume that viewers look at, behind a service that may be lost and made again.
+// The volume that viewers look at, or the time steps of a series, behind a service that may be lost and made
+// again.
 #pragma once
 
 #include <functional>
@@ -8,7 +9,9 @@
 #include <vector>
 
 #include "apps/understudy/cli/loading_nodes.h"
+#include "apps/understudy/cli/memory_option.h"
 #include "apps/understudy/file_scene/file_scene.h"
+#include "apps/understudy/file_scene/time_steps.h"
 #include "apps/understudy/view/image_encoding.h"
 #include "apps/understudy/view/view_state.h"
 #include "volume/frame_counts.h"
@@ -19,11 +22,14 @@ namespace understudy::launcher {
 
 class ShownVolume {
  public:
-  ShownVolume(const FileScene& scene, ServiceMaker make) : scene_(scene), make_(std::move(make)) {}
+  /// Of a series, as many time steps stay loaded as `memory` allows. `scene` outlives this.
+  ShownVolume(const FileScene& scene, ServiceMaker make, RankMemory memory)
+      : scene_(scene), make_(std::move(make)), memory_(std::move(memory)) {}
 
   const FileScene& scene() const { return scene_; }
 
-  /// Makes a service, and has it read the volume; `progress` hears after every step how far the ranks are.
+  /// Makes a service, and has it read the volume, or the first time step that is shown; `progress` hears after
+  /// every part how far the ranks are.
   /// Throws ServiceLost and RequestRefused.
   void load(const std::function<void(const std::vector<compositor::RankLoad>&)>& progress);
 
@@ -35,7 +41,10 @@ class ShownVolume {
     volume::FrameCounts counts;
     double ms = 0;  ///< to render and to composite, as it was waited for
   };
+  /// A time step that is not there is read first.
   Drawn draw(const ViewState& state);
+  /// Reads some of the time step that comes next; false: there is nothing more to read.
+  bool read_ahead();
 
   struct Exactness {
     double error = 0;  ///< greatest difference of a channel from the integral, of the rays that were looked at
@@ -59,10 +68,14 @@ class ShownVolume {
 
  private:
   Histogram measured_histogram();
+  /// Before a call after which the service's image is gone.
+  void keep_image();
 
   const FileScene& scene_;
   ServiceMaker make_;
+  RankMemory memory_;
   std::unique_ptr<compositor::LoadingService> service_;
+  std::optional<TimeSteps> steps_;  ///< of this service
   volume::TexelFigures values_;
   Histogram histogram_;
   // Of the last image.

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "apps/understudy/cli/loading_nodes.h"
+#include "apps/understudy/cli/memory_option.h"
 #include "apps/understudy/cli/output_file.h"
 #include "apps/understudy/cli/view_program.h"
 #include "apps/understudy/file_scene/file_scene.h"
@@ -29,6 +30,7 @@ struct ViewArguments {
   LoadingNodes nodes;
   std::optional<int> port;
   std::string host = WebAddress().host;
+  std::string memory = "auto";
   WindowScript script;
 };
 
@@ -39,11 +41,16 @@ int view(const ViewArguments& arguments) {
     throw std::invalid_argument(fmt::format("a view of {} pixels; give {} to {} a side", arguments.scene.size,
                                             least_view_side, most_view_side));
   widen_ghost_layer(scene);
+  const RankMemory memory = [&](int ranks) {
+    return memory_for_volume(arguments.memory, ranks, ranks_are_here(arguments.nodes),
+                             std::size_t(scene.image.width) * std::size_t(scene.image.height))
+        .bytes;
+  };
   with_loading_nodes(arguments.nodes, [&](const ServiceMaker& make, const std::stop_token& stop) {
     if (arguments.port)
-      show_on_web(scene, make, stop, {arguments.host, *arguments.port});
+      show_on_web(scene, make, memory, stop, {arguments.host, *arguments.port});
     else
-      show_in_window(scene, make, stop, arguments.script);
+      show_in_window(scene, make, memory, stop, arguments.script);
   });
   return 0;
 }
@@ -55,6 +62,8 @@ void add_view(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("view", view_description);
   add_scene_options(*command, arguments->scene);
   add_loading_nodes(*command, arguments->nodes);
+  add_memory_option(*command, arguments->memory,
+                    "what each rank may take: of a series as many time steps stay loaded");
   CLI::Option* web = command
                          ->add_option("--web", arguments->port,
                                       "show in browsers, by the link that is printed; 0 takes any free port")
@@ -73,6 +82,8 @@ void add_view(CLI::App& app, std::function<int()>& chosen) {
           ->excludes(web);
   command->add_option("--orbit", arguments->script.orbit, "degrees of azimuth from one frame to the next")
       ->needs(frames);
+  command->add_flag("--play", arguments->script.plays,
+                    "of a series: each frame shows the next time step, in a window that is begun so");
   command->add_option("--save", arguments->script.save, "the last frame")
       ->type_name("P.png")
       ->needs(frames)

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/understudy/file_scene/control_points_file.h"
+#include "volume/file/series.h"
 #include "volume/surface.h"
 
 namespace understudy::launcher {
@@ -135,6 +136,8 @@ ViewMessage decode_view_message(std::string_view text) {
       message.light = flag_in("light", value);
     else if (key == "step")
       message.step = number_in("step", value, least_view_step, most_view_step);
+    else if (key == "time_step")
+      message.time_step = int(number_in("time_step", value, 0, double(volume::max_time_steps)));
     else
       throw MalformedView("a key that no page sends");
   }

@@ -47,7 +47,8 @@ struct ViewMessage {
   std::optional<bool> shows_volume;
   std::optional<std::vector<SurfaceChoice>> surfaces;  ///< at places of the range
   std::optional<bool> light;
-  std::optional<double> step;  ///< voxels
+  std::optional<double> step;    ///< voxels
+  std::optional<int> time_step;  ///< of a series, counted from 0
 };
 
 /// Throws MalformedView.

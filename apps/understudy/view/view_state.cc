@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/view/view_state.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -24,9 +26,14 @@ constexpr double coarsest = 6;
 ViewState::ViewState(const FileScene& scene)
     : camera_{scene.image.camera, {}},
       image_(scene.image),
-      light_(scene.image.shading.light.value_or(usual_light(scene))) {}
+      light_(scene.image.shading.light.value_or(usual_light(scene))),
+      time_step_(scene.time_step),
+      time_steps_(std::max(1, int(scene.series.size()))) {}
 
 void ViewState::apply(const ViewMessage& message) {
+  if (message.time_step && *message.time_step >= time_steps_)
+    throw MalformedView(fmt::format("'time_step' is not below {}", time_steps_));
+  time_step_ = message.time_step.value_or(time_step_);
   sequence_ = message.sequence;
   still_ = message.still;
   if (message.lossless) lossless_moving_ = *message.lossless;

@@ -16,6 +16,7 @@ class ViewState {
  public:
   explicit ViewState(const FileScene& scene);
 
+  /// Throws MalformedView, with the state as it was, for a time step that there is not.
   void apply(const ViewMessage& message);
 
   const ViewCamera& camera() const { return camera_; }
@@ -23,6 +24,7 @@ class ViewState {
   bool still() const { return still_; }
   bool lossless() const { return still_ || lossless_moving_; }
   std::uint64_t sequence() const { return sequence_; }
+  int time_step() const { return time_step_; }
 
   /// Of the image that is due: smaller while the camera moves, as far as its time asks for.
   std::array<int, 2> size() const;
@@ -44,6 +46,8 @@ class ViewState {
   bool still_ = true;
   bool lossless_moving_ = false;
   std::uint64_t sequence_ = 0;
+  int time_step_;
+  int time_steps_;  ///< how many there are
   std::array<int, 2> last_size_{};
   std::optional<double> ms_a_pixel_;  ///< smoothed
 };

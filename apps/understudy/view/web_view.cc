@@ -46,11 +46,11 @@ double part_done(const std::vector<compositor::RankLoad>& ranks) {
 
 class WebView {
  public:
-  WebView(const FileScene& scene, const ServiceMaker& make, const std::stop_token& stop,
-          const WebAddress& address)
+  WebView(const FileScene& scene, const ServiceMaker& make, const RankMemory& memory,
+          const std::stop_token& stop, const WebAddress& address)
       : scene_(scene),
         stop_(stop),
-        volume_(scene, make),
+        volume_(scene, make, memory),
         server_(address.host, address.port, random_digits(secret_bytes),
                 {[this](Viewer viewer) { join(viewer); },
                  [this](Viewer viewer, std::string_view text) { hear(viewer, text); },
@@ -194,6 +194,10 @@ class WebView {
           return error_check_.reset();  // the image is there; what it lacks is its figures
         }
       }
+      if (reads_ahead_ && !is_wanted()) {
+        lock.unlock();
+        return read_ahead();
+      }
       if (!something_new_.wait(lock, stop_, is_wanted)) return;
       error_check_.reset();
       const auto session = next_session();
@@ -222,6 +226,7 @@ class WebView {
     const Clock::time_point start = Clock::now();
     const ShownVolume::Drawn drawn = volume_.draw(state);
     server_.send_image(viewer, image_message(state, drawn));
+    reads_ahead_ = true;
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     {
       const std::lock_guard lock(mutex_);
@@ -251,6 +256,15 @@ class WebView {
     if (seen.rays >= enough_rays || more->rays == 0) error_check_.reset();
   }
 
+  /// A time step that cannot be read is spoken of once it is wanted.
+  void read_ahead() {
+    try {
+      reads_ahead_ = volume_.read_ahead();
+    } catch (const compositor::RequestRefused&) {
+      reads_ahead_ = false;
+    }
+  }
+
   void refuse(Viewer viewer, const ViewState& state, const char* reason) {
     server_.send_text(viewer, refusal_message(state.sequence(), reason));
     sent(viewer);
@@ -260,6 +274,7 @@ class WebView {
   const std::stop_token stop_;
   ShownVolume volume_;
   std::optional<ErrorCheck> error_check_;
+  bool reads_ahead_ = false;  ///< there may be more to read of the next time step
   std::mutex mutex_;
   std::condition_variable_any something_new_;
   std::map<Viewer, Session> sessions_;
@@ -271,9 +286,9 @@ class WebView {
 
 }  // namespace
 
-void show_on_web(const FileScene& scene, const ServiceMaker& make, const std::stop_token& stop,
-                 const WebAddress& address) {
-  WebView view(scene, make, stop, address);
+void show_on_web(const FileScene& scene, const ServiceMaker& make, const RankMemory& memory,
+                 const std::stop_token& stop, const WebAddress& address) {
+  WebView view(scene, make, memory, stop, address);
   std::printf("understudy: look at it under %s\n", view.server().link().c_str());
   std::fflush(stdout);
   view.run();

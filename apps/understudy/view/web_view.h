@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/understudy/cli/loading_nodes.h"
+#include "apps/understudy/cli/memory_option.h"
 #include "apps/understudy/file_scene/file_scene.h"
 
 namespace understudy::launcher {
@@ -18,7 +19,7 @@ struct WebAddress {
 /// Prints the link, loads the volume and draws for all viewers, one image at a time, until `stop` is
 /// requested. A service that is lost is made again, for as long as it takes. Throws what keeps the volume from
 /// being loaded the first time, and std::runtime_error where the address cannot be listened on.
-void show_on_web(const FileScene& scene, const ServiceMaker& make, const std::stop_token& stop,
-                 const WebAddress& address);
+void show_on_web(const FileScene& scene, const ServiceMaker& make, const RankMemory& memory,
+                 const std::stop_token& stop, const WebAddress& address);
 
 }  // namespace understudy::launcher

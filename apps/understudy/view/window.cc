@@ -53,14 +53,14 @@ struct Video {
 
 class Window {
  public:
-  Window(const FileScene& scene, const ServiceMaker& make, const std::stop_token& stop,
-         const WindowScript& script)
-      : name_(std::filesystem::path(scene.load.file).filename().string()),
-        stop_(stop),
+  Window(const FileScene& scene, const ServiceMaker& make, const RankMemory& memory,
+         const std::stop_token& stop, const WindowScript& script)
+      : stop_(stop),
         script_(script),
-        volume_(scene, make),
+        plays_(script.plays),
+        volume_(scene, make, memory),
         state_(scene),
-        window_(SDL_CreateWindow(name_.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED,
+        window_(SDL_CreateWindow(name().c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED,
                                  scene.image.width, scene.image.height, SDL_WINDOW_RESIZABLE),
                 SDL_DestroyWindow) {
     if (!window_) fail("there can be no window");
@@ -116,6 +116,7 @@ class Window {
     if (frame > 0) {
       message.camera = state_.camera();
       message.camera->orbit.azimuth += script_.orbit;
+      if (plays_) message.time_step = step_after(1);
     }
     state_.apply(message);
     const ShownVolume::Drawn drawn = draw();
@@ -131,17 +132,41 @@ class Window {
   }
 
   void live() {
-    hear(due_ ? 0 : wait_ms);
+    hear(due_ || reads_ahead_ ? 0 : wait_ms);
     if (due_) {
       due_ = false;
       draw();
+      reads_ahead_ = true;
+      if (plays_) return play_on();
       if (state_.still())
         if (const auto exactness = volume_.exactness())
           say(fmt::format("{:.0f} ms, error {:.4f} of {} rays", drawn_ms_, exactness->error, exactness->rays));
     } else if (!state_.still() && Clock::now() - moved_ > rest) {
       state_.apply({});
       due_ = true;
+    } else if (reads_ahead_) {
+      reads_ahead_ = volume_.read_ahead();
     }
+  }
+
+  void play_on() {
+    ViewMessage message;
+    message.still = false;
+    message.time_step = step_after(1);
+    moved_ = Clock::now();
+    state_.apply(message);
+    due_ = true;
+  }
+
+  /// Behind the last time step comes the first.
+  int step_after(int steps) const {
+    const auto count = int(volume_.scene().series.size());
+    return (state_.time_step() + steps + count) % count;
+  }
+
+  std::string name() const {
+    const auto& series = volume_.scene().series;
+    return std::filesystem::path(series[std::size_t(state_.time_step())]).filename().string();
   }
 
   ShownVolume::Drawn draw() {
@@ -169,7 +194,7 @@ class Window {
   }
 
   void say(const std::string& what) {
-    SDL_SetWindowTitle(window_.get(), fmt::format("{} · {}", name_, what).c_str());
+    SDL_SetWindowTitle(window_.get(), fmt::format("{} · {}", name(), what).c_str());
   }
 
   void hear(int most_ms) {
@@ -256,6 +281,15 @@ class Window {
       case SDLK_HOME:
         message.camera = ViewCamera{volume_.scene().image.camera, {}};
         return true;
+      case SDLK_PAGEDOWN:
+        message.time_step = step_after(1);
+        return true;
+      case SDLK_PAGEUP:
+        message.time_step = step_after(-1);
+        return true;
+      case SDLK_SPACE:
+        plays_ = !plays_ && volume_.scene().series.size() > 1;
+        return true;
       case SDLK_l:
         message.light = !shading.light.has_value();
         return true;
@@ -286,15 +320,16 @@ class Window {
     return {(x - image.width / 2.0) / half, (image.height / 2.0 - y) / half};
   }
 
-  const std::string name_;
   const std::stop_token stop_;
   const WindowScript& script_;
+  bool plays_;
   Video video_;
   ShownVolume volume_;
   ViewState state_;
   std::unique_ptr<SDL_Window, void (*)(SDL_Window*)> window_;
   bool over_ = false;
   bool due_ = true;  // an image
+  bool reads_ahead_ = false;
   Clock::time_point moved_{};
   double drawn_ms_ = 0;
   std::optional<double> last_ms_;  // of the last image, until it is told
@@ -302,9 +337,9 @@ class Window {
 
 }  // namespace
 
-void show_in_window(const FileScene& scene, const ServiceMaker& make, const std::stop_token& stop,
-                    const WindowScript& script) {
-  Window(scene, make, stop, script).run();
+void show_in_window(const FileScene& scene, const ServiceMaker& make, const RankMemory& memory,
+                    const std::stop_token& stop, const WindowScript& script) {
+  Window(scene, make, memory, stop, script).run();
 }
 
 }  // namespace understudy::launcher

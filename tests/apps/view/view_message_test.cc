@@ -25,7 +25,7 @@ const std::string everything =
         "table": {"knots": [{"at": 0, "colour": [0, 0, 0], "opacity": 0},
                             {"at": 1, "colour": [1, 0.5, 0.25], "opacity": 0.5}]},
         "volume": false, "surfaces": [{"at": 0.4, "colour": [1, 0, 0], "opacity": 0.5}], "light": true,
-        "step": 2})";
+        "step": 2, "time_step": 1})";
 
 std::string refusal(const std::string& text) {
   try {
@@ -38,7 +38,7 @@ std::string refusal(const std::string& text) {
 
 FileScene some_scene() {
   SceneArguments arguments;
-  arguments.volume = "synthetic:24x20x16:u8:lobes";
+  arguments.volumes = {"synthetic:24x20x16:u8:lobes", "synthetic:24x20x16:u8:shells"};
   FileScene scene = scene_of(arguments);
   widen_ghost_layer(scene);
   return scene;
@@ -60,6 +60,7 @@ TEST(ViewMessage, EveryKeyArrives) {
   ASSERT_TRUE(message.table);
   EXPECT_EQ(message.table->control_points.at(1).opacity, 0.5);
   EXPECT_EQ(message.shows_volume, false);
+  EXPECT_EQ(message.time_step, 1);
   ASSERT_TRUE(message.surfaces);
   EXPECT_EQ(message.surfaces->at(0).at, 0.4);
   EXPECT_EQ(message.light, true);
@@ -110,8 +111,14 @@ TEST(ViewMessage, DamagedMessagesAreRefusedOrCanBeDrawn) {
       ++refused;
       continue;
     }
+    try {
+      state.apply(message);
+    } catch (const MalformedView&) {
+      ++refused;
+      EXPECT_GT(message.time_step, 1);
+      continue;
+    }
     ++believed;
-    state.apply(message);
     const volume::RenderRequest request = state.request(scene, values);
     for (const double value : request.texture_to_clip) ASSERT_TRUE(std::isfinite(value)) << text;
     ASSERT_LE(request.window.pixels(), std::size_t(most_view_side) * most_view_side);

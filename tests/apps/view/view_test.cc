@@ -242,6 +242,69 @@ TEST_F(View, AWindowSavesTheImageOfRender) {
   }
 }
 
+TEST_F(View, OfASeriesEveryTimeStepHasTheImageOfItsFile) {
+  const std::vector<std::string> files{"synthetic:40x36x32:u8:lobes", "synthetic:40x36x32:u8:gyroid",
+                                       "synthetic:40x36x32:u8:shells"};
+  // Of values, so that it means the same in all of them.
+  const std::string common = " --size 120x90 --transfer-function " +
+                             folder_.write("t.json", R"({"positions": "values", "knots": [
+                               {"at": 0, "colour": [0, 0, 1], "opacity": 0},
+                               {"at": 255, "colour": [1, 0.5, 0], "opacity": 0.4}]})") +
+                             " ";
+  std::vector<RgbaImage> expected;
+  for (const std::string& file : files) expected.push_back(rendered(file + common));
+  EXPECT_EQ(greatest_difference(rendered(files[0] + " " + files[1] + " " + files[2] + common + "--time-step 1"),
+                                expected[1]),
+            0);
+  for (const char* nodes : {"0", "2"}) {
+    std::vector<std::string> words = files;
+    for (const char* word : {"--size", "120x90", "--transfer-function", "--time-step", "2"}) {
+      words.emplace_back(word);
+      if (words.back() == "--transfer-function") words.push_back(folder_.file("t.json"));
+    }
+    if (*nodes != '0') words.insert(words.end(), {"-n", nodes});
+    const ViewProcess process(words);
+    WebClient client(process.port());
+    const Json volume = greeted(client, process);
+    EXPECT_EQ(volume.at("time_steps"), 3);
+    EXPECT_EQ(volume.at("time_step"), 2);
+    for (const int step : {2, 0, 1, 2, 1}) {
+      const WebClient::Message image = client.image({{"time_step", step}});
+      EXPECT_EQ(image.json.at("time_step"), step);
+      EXPECT_LE(greatest_difference(decoded(image.image), expected[std::size_t(step)]),
+                *nodes == '0' ? 0 : 1.01 / 255)
+          << step;
+    }
+    client.send({{"time_step", 3}});
+    EXPECT_THAT(client.wait_for("impossible").json.at("text"), HasSubstr("'time_step' is not below 3"));
+  }
+}
+
+TEST_F(View, StepsOfAnotherSizeAreNoSeries) {
+  const Result result = render("synthetic:40x36x32 synthetic:40x36x33 --size 32x32");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.output, AllOf(HasSubstr("40 x 36 x 33"), HasSubstr("one size and type")));
+  EXPECT_THAT(render("synthetic:8x8x8 --time-step 1").output, HasSubstr("there is no time step 1"));
+  EXPECT_THAT(render("'" + folder_.file("none_*.vti") + "'").output, HasSubstr("no file has such a name"));
+}
+
+TEST_F(View, AWindowPlaysASeries) {
+  const auto display = viewer_test::VirtualDisplay::start();
+  if (!display) GTEST_SKIP() << "Xvfb is not installed";
+  const std::string files = "synthetic:40x36x32:u8:lobes synthetic:40x36x32:u8:gyroid";
+  const std::string common = " --transfer-function " +
+                             folder_.write("t.json", R"({"positions": "values", "knots": [
+                               {"at": 0, "colour": [0, 0, 1], "opacity": 0},
+                               {"at": 255, "colour": [1, 0.5, 0], "opacity": 0.4}]})") +
+                             " --size 120x90 ";
+  const Result result = shell("DISPLAY=" + display->name() + " " + UNDERSTUDY_PROGRAM + " view " + files +
+                              common + "--frames 4 --play --save " + folder_.file("w.png"));
+  ASSERT_EQ(result.status, 0) << result.output;
+  EXPECT_EQ(
+      greatest_difference(read_image(folder_.file("w.png")), rendered("synthetic:40x36x32:u8:gyroid" + common)),
+      0);
+}
+
 TEST_F(View, WithoutADisplayTheWayOutIsSaid) {
   const Result result = shell(std::string("env -u DISPLAY -u WAYLAND_DISPLAY SDL_VIDEODRIVER=x11 ") +
                               UNDERSTUDY_PROGRAM + " view " + volume_name + " --frames 1");

@@ -19,6 +19,7 @@ let moving = false, rest_timer = 0;
 let took_ms = null;
 let sequence = 0;
 let shown = null, ranks = [];
+let plays = false, next_step_timer = 0;
 const rate = [];           // when the last images came
 
 // ---- requests
@@ -54,8 +55,8 @@ function send() {
   const message = {...asked, sequence: ++sequence, still: !moving};
   if (took_ms !== null) message.took_ms = took_ms;
   if (!connection.send(message)) return;
-  const {table, volume: shows, surfaces, light, step, lossless} = message;
-  remember(JSON.parse(JSON.stringify({table, volume: shows, surfaces, light, step, lossless})));
+  const {table, volume: shows, surfaces, light, step, lossless, time_step} = message;
+  remember(JSON.parse(JSON.stringify({table, volume: shows, surfaces, light, step, lossless, time_step})));
   on_its_way = {sequence, since: asked_at};
   asked = {};
   asked_at = null;
@@ -72,6 +73,7 @@ async function show(head, bytes) {
   bitmap.close();
   shown = head;
   remember({camera: head.camera});
+  tellTime();
   overlay();
   answered(head.sequence);
   const now = performance.now();
@@ -91,6 +93,7 @@ function answered(number) {
   last_ms = performance.now() - on_its_way.since;
   took_ms = last_ms;
   on_its_way = null;
+  playOn();
   send();
   tellWhetherBusy();
 }
@@ -147,6 +150,10 @@ function begin(message) {
   element('light').checked = before.light ?? message.light;
   element('step').value = before.step ?? message.step;
   element('lossless').checked = before.lossless ?? false;
+  element('time').hidden = message.time_steps < 2;
+  element('time-step').max = message.time_steps - 1;
+  if (!(before.time_step < message.time_steps)) delete before.time_step;
+  element('time-step').value = before.time_step ?? message.time_step;
   tellControls();
   ask({...before, size: sizeOf(viewport)}, false);
 }
@@ -244,6 +251,9 @@ image.addEventListener('wheel', event => {
 image.addEventListener('keydown', event => {
   const turns = {ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1]};
   if (turns[event.key]) ask({rotate: [[0, 0], turns[event.key]]}, true);
+  else if (volume?.time_steps > 1 && event.key === 'PageUp') goTo(Number(element('time-step').value) - 1);
+  else if (volume?.time_steps > 1 && event.key === 'PageDown') goTo(Number(element('time-step').value) + 1);
+  else if (volume?.time_steps > 1 && event.key === ' ') play(!plays);
   else if (event.key === '+' || event.key === '-') ask({zoom: {by: event.key === '+' ? 1.15 : 1 / 1.15, at: [0, 0]}}, true);
   else return;
   event.preventDefault();
@@ -268,6 +278,43 @@ function valueAt(place) {
 element('control-point').style.visibility = 'hidden';
 element('control-point-colour').addEventListener('input', event => editor.recolour(colourIn(event.target.value)));
 element('control-point-remove').addEventListener('click', () => editor.remove());
+
+// ---- time
+
+let step_asked_at = 0;
+
+function goTo(time_step) {
+  const count = volume.time_steps;
+  element('time-step').value = (time_step + count) % count;
+  step_asked_at = performance.now();
+  ask({time_step: Number(element('time-step').value)}, true);
+}
+
+function tellTime() {
+  element('time-text').textContent = `${shown.time_step} of 0 to ${volume.time_steps - 1}`;
+  document.documentElement.dataset.timeStep = shown.time_step;
+}
+
+// Behind the last time step comes the first; no step is left out, however slow they are.
+function playOn() {
+  clearTimeout(next_step_timer);
+  if (!plays || !volume) return;
+  const pace = Number(element('pace').value), wait = pace ? 1000 / pace : 0;
+  next_step_timer = setTimeout(() => { if (plays && volume) goTo(Number(element('time-step').value) + 1); },
+                               Math.max(0, step_asked_at + wait - performance.now()));
+}
+
+function play(wanted) {
+  plays = wanted;
+  element('play').textContent = plays ? 'Pause' : 'Play';
+  playOn();
+}
+element('play').addEventListener('click', () => play(!plays));
+element('earlier').addEventListener('click', () => goTo(Number(element('time-step').value) - 1));
+element('later').addEventListener('click', () => goTo(Number(element('time-step').value) + 1));
+element('time-step').addEventListener('input', event => goTo(Number(event.target.value)));
+
+// ---- the other controls
 
 function tellControls() {
   element('surface-value').textContent = valueAt(Number(element('surface-at').value));

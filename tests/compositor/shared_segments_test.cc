@@ -16,6 +16,7 @@ namespace {
 
 std::vector<FileDescriptor> memories_of(int ranks) {
   std::vector<FileDescriptor> memories;
+  memories.reserve(std::size_t(ranks));
   for (int rank = 0; rank < ranks; ++rank) memories.push_back(SharedSegments::make_memory());
   return memories;
 }

@@ -30,6 +30,7 @@ class ViewProcess {
     std::vector<std::string> words{UNDERSTUDY_PROGRAM, "view", "--web", "0"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
+    argv.reserve(words.size() + 1);
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
     const int failed = posix_spawn(&process_, UNDERSTUDY_PROGRAM, &actions, nullptr, argv.data(), environ);

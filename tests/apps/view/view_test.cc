@@ -252,6 +252,7 @@ TEST_F(View, OfASeriesEveryTimeStepHasTheImageOfItsFile) {
                                {"at": 255, "colour": [1, 0.5, 0], "opacity": 0.4}]})") +
                              " ";
   std::vector<RgbaImage> expected;
+  expected.reserve(files.size());
   for (const std::string& file : files) expected.push_back(rendered(file + common));
   EXPECT_EQ(greatest_difference(rendered(files[0] + " " + files[1] + " " + files[2] + common + "--time-step 1"),
                                 expected[1]),

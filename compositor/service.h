@@ -16,6 +16,7 @@
 #include "volume/volume_id.h"
 
 namespace understudy::volume {
+struct Image;
 struct Pixel;
 struct RenderRequest;
 struct TexelBox;
@@ -55,6 +56,11 @@ class ImageService {
 
   /// The image of one request. Its volume must be complete, and have the version that the request names.
   virtual Rendered render(const volume::RenderRequest& request) = 0;
+
+  /// The images of requests with one camera, in their order. What has to be loaded for one is loaded once.
+  virtual std::vector<volume::Image> images(std::span<const volume::RenderRequest> requests);
+  /// Whether an image takes what loading takes, however few its samples are.
+  virtual bool loads_for_images() const { return false; }
 
   /// What pixels of the request would show if its samples were taken ever more densely
   /// (volume/pixel_integral.h): of as many of `pixels`, in their order, as can be integrated in

@@ -139,60 +139,84 @@ bool PassRenderer::may_show(const RenderRequest& request, int part) const {
          });
 }
 
-volume::Rect PassRenderer::open_pixels(const RenderRequest& request, int part) const {
+std::optional<RenderRequest> PassRenderer::request_of_part(const RenderRequest& request,
+                                                           const volume::Image& image, int part) const {
   const volume::Rect footprint =
-      intersection(volume::footprint(request, load_.volume, parts_.box(part)), image_.rect);
+      intersection(volume::footprint(request, load_.volume, parts_.box(part)), image.rect);
+  RenderRequest of_part = request;
+  of_part.window = footprint;
   const bool covers = request.op == volume::Operator::over || request.op == volume::Operator::first_hit;
-  if (!covers || request.bound_of) return footprint;
-  const float least = volume::least_transparency(request);
-  const auto is_open = [&](const float* pixel) { return 1 - pixel[3] >= least; };
-  volume::Rect open;
-  for (int y = footprint.y; y < footprint.y + footprint.height; ++y)
-    for (int x = footprint.x; x < footprint.x + footprint.width; ++x)
-      if (is_open(image_.at(x, y))) open = bounding(open, {x, y, 1, 1});
-  return open;
+  if (covers && !request.bound_of) {
+    const float least = volume::least_transparency(request);
+    of_part.window = {};
+    for (int y = footprint.y; y < footprint.y + footprint.height; ++y)
+      for (int x = footprint.x; x < footprint.x + footprint.width; ++x)
+        if (1 - image.at(x, y)[3] >= least) of_part.window = bounding(of_part.window, {x, y, 1, 1});
+  }
+  if (of_part.window.empty()) return std::nullopt;
+  return of_part;
 }
 
-Rendered PassRenderer::render_parts(const RenderRequest& request) {
-  if (request.opacity_limit < 1)
-    throw RequestRefused(
-        "rays that end where they are opaque have to be cast whole: give more memory or nodes");
+void PassRenderer::add_image_figures() {
+  const std::vector<RankLoad> ranks = service_.continue_load(load_.volume.id);
+  for (std::size_t i = 0; i < ranks.size(); ++i) {
+    ranks_[i].peak_bytes = std::max(ranks_[i].peak_bytes, ranks[i].peak_bytes);
+    ranks_[i].brick_bytes = std::max(ranks_[i].brick_bytes, ranks[i].brick_bytes);
+    ranks_[i].image_ms += ranks[i].image_ms;
+    ranks_[i].image_processor_ms += ranks[i].image_processor_ms;
+    ranks_[i].image_samples += ranks[i].image_samples;
+  }
+}
+
+std::vector<PassRenderer::Composite> PassRenderer::composites(std::span<const RenderRequest> requests) {
   volume::VolumeDescription whole = load_.volume;
   whole.part.reset();
-  image_ = volume::Image(volume::footprint(request, whole, volume::shown_cells(whole)));
-  std::ranges::fill(image_.rgba, volume::neutral_value(request.op));
-  Rendered rendered;
-  for (RankLoad& rank : ranks_) rank.image_ms = rank.image_processor_ms = 0, rank.image_samples = 0;
-  for (const int part : parts_.visibility_order(request)) {
-    if (volume::is_empty(parts_.box(part)) || !may_show(request, part)) {
-      ++figures_.empty;
-      continue;
-    }
-    RenderRequest of_part = request;
-    of_part.window = open_pixels(request, part);
-    if (of_part.window.empty()) {
-      ++figures_.hidden;
-      continue;
-    }
-    load_for_image(part);
-    const Rendered shown = service_.render(of_part);
-    blend(request.op, image_, shown.image);
-    rendered.counts += shown.counts;
-    const std::vector<RankLoad> ranks = service_.continue_load(load_.volume.id);
-    for (std::size_t i = 0; i < ranks.size(); ++i) {
-      ranks_[i].peak_bytes = std::max(ranks_[i].peak_bytes, ranks[i].peak_bytes);
-      ranks_[i].brick_bytes = std::max(ranks_[i].brick_bytes, ranks[i].brick_bytes);
-      ranks_[i].image_ms += ranks[i].image_ms;
-      ranks_[i].image_processor_ms += ranks[i].image_processor_ms;
-      ranks_[i].image_samples += ranks[i].image_samples;
-    }
+  std::vector<Composite> composites;
+  for (const RenderRequest& request : requests) {
+    if (request.opacity_limit < 1)
+      throw RequestRefused(
+          "rays that end where they are opaque have to be cast whole: give more memory or nodes");
+    volume::Image& image =
+        composites.emplace_back(Composite{volume::Image(footprint(request, whole, shown_cells(whole))), {}})
+            .image;
+    std::ranges::fill(image.rgba, volume::neutral_value(request.op));
   }
-  rendered.image = image_.view();
-  return rendered;
+  for (RankLoad& rank : ranks_) rank.image_ms = rank.image_processor_ms = 0, rank.image_samples = 0;
+  for (const int part : parts_.visibility_order(requests.front())) {
+    bool shows = false, reached = false;
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+      if (volume::is_empty(parts_.box(part)) || !may_show(requests[i], part)) continue;
+      shows = true;
+      const auto request = request_of_part(requests[i], composites[i].image, part);
+      if (!request) continue;
+      reached = true;
+      load_for_image(part);
+      const Rendered shown = service_.render(*request);
+      blend(request->op, composites[i].image, shown.image);
+      composites[i].counts += shown.counts;
+      add_image_figures();
+    }
+    if (!shows)
+      ++figures_.empty;
+    else if (!reached)
+      ++figures_.hidden;
+  }
+  return composites;
 }
 
 Rendered PassRenderer::render(const RenderRequest& request) {
-  return parts_.ranks() == 1 ? service_.render(request) : render_parts(request);
+  if (parts_.ranks() == 1) return service_.render(request);
+  Composite composite = std::move(composites({&request, 1}).front());
+  image_ = std::move(composite.image);
+  return {image_.view(), composite.counts};
+}
+
+std::vector<volume::Image> PassRenderer::images(std::span<const RenderRequest> requests) {
+  if (parts_.ranks() == 1) return service_.images(requests);
+  std::vector<volume::Image> images;
+  images.reserve(requests.size());
+  for (Composite& composite : composites(requests)) images.push_back(std::move(composite.image));
+  return images;
 }
 
 std::vector<volume::PixelIntegral> PassRenderer::integrals(const RenderRequest& request,

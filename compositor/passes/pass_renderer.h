@@ -45,6 +45,8 @@ class PassRenderer : public ImageService {
   void load(const volume::RenderRequest& view);
 
   Rendered render(const volume::RenderRequest& request) override;
+  std::vector<volume::Image> images(std::span<const volume::RenderRequest> requests) override;
+  bool loads_for_images() const override { return parts_.ranks() > 1; }
   /// Of parts all pixels are integrated: loading takes longer.
   std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest& request,
                                                std::span<const volume::Pixel> pixels, double most_ms) override;
@@ -62,9 +64,17 @@ class PassRenderer : public ImageService {
   void load_for_image(int part);
   void load_part(int part);
   bool may_show(const volume::RenderRequest& request, int part) const;
-  /// A rectangle around the pixels of `image_` in which more of this part can show.
-  volume::Rect open_pixels(const volume::RenderRequest& request, int part) const;
-  Rendered render_parts(const volume::RenderRequest& request);
+  /// What is composited of a request.
+  struct Composite {
+    volume::Image image;
+    volume::FrameCounts counts;
+  };
+  /// The request for the pixels in which this part can show something, if there are any.
+  std::optional<volume::RenderRequest> request_of_part(const volume::RenderRequest& request,
+                                                       const volume::Image& image, int part) const;
+  std::vector<Composite> composites(std::span<const volume::RenderRequest> requests);
+  /// Adds what the last image took to those of the other parts.
+  void add_image_figures();
 
   LoadingService& service_;
   const volume::VolumeFile& file_;

@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint64_t no_limit = std::numeric_limits<std::uint64_t>::max();
 
 /// Of a rank that has no volume: program, MPI, threads.
-constexpr std::uint64_t resident_bytes = std::uint64_t(64) << 20;
+constexpr std::uint64_t resident_bytes = std::uint64_t(40) << 20;
 /// The addresses that these take are many more.
 constexpr std::uint64_t address_bytes = std::uint64_t(1) << 30;
 /// Of an image, its copies on their way to rank 0, and what is kept for each ray.

@@ -54,6 +54,7 @@ compositor::Rendered SceneFrames::next(RenderFigures& figures) {
     compositor::Rendered rendered = service_.render(figures.request);
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     const std::uint64_t over = figures.budget.images_over;
+    if (chosen && !looks_) figures.budget.ms = ms;
     if (chosen && looks_) budget_->look_at(service_, rendered.image, ms, figures.budget);
     if (figures.budget.images_over > over && turn < most_turns) continue;
     figures.frame_ms.push_back(ms);

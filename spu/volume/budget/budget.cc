@@ -137,16 +137,17 @@ void Budget::use(std::size_t of_front) {
 void Budget::prove(compositor::ImageService& service) {
   const auto& front = calibration_.front;
   do {
-    const compositor::Rendered beside = service.render(sampled_as(meaning_, next_finer().setting));
-    const volume::Image kept = copy_of(beside.image);
-    const compositor::Rendered shown = service.render(sampled_as(meaning_, front[chosen_].setting));
-    suspects_ = most_different(shown.image, kept.view(), proving_suspects);
+    const std::array requests{sampled_as(meaning_, next_finer().setting),
+                              sampled_as(meaning_, front[chosen_].setting)};
+    const std::vector<volume::Image> images = service.images(requests);
+    const volume::ImageView finer = images[0].view(), shown = images[1].view();
+    suspects_ = most_different(shown, finer, proving_suspects);
     std::vector<Pixel> pixels = suspects_;
-    const std::vector<Pixel> spread = spread_over(shown.image.rect, spread_, proving_spread);
+    const std::vector<Pixel> spread = spread_over(shown.rect, spread_, proving_spread);
     pixels.insert(pixels.end(), spread.begin(), spread.end());
     const auto integrals = integrals_of(service, meaning_.request, pixels, suspects_.size(), proving_ms);
     spread_ += proving_spread;
-    worst_ = greatest_error(shown.image, pixels, integrals);
+    worst_ = greatest_error(shown, pixels, integrals);
     if (integrals.size() < suspects_.size()) worst_ = std::max(worst_, front[chosen_].error);
   } while (worst_ > room_when_proven * asked_.error && go_finer());
 }

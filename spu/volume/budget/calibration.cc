@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <random>
 #include <utility>
 
@@ -146,23 +147,32 @@ double greatest_error(const ImageView& image, std::span<const Pixel> pixels,
   return greatest;
 }
 
-Calibration calibrate(compositor::ImageService& service, const Meaning& meaning,
-                      const volume::VolumeDescription& volume, float termination, double enough) {
+namespace {
+
+/// The setting with samples so many texels apart; none where the volume's ghost layer is too thin for it.
+std::optional<Setting> setting_of(const Meaning& meaning, const volume::VolumeDescription& volume,
+                                  volume::Method method, double texels, float termination) {
+  const Setting setting{method, texels / meaning.texels_a_step, termination};
+  if (volume::ghost_layer_needed(volume, sampled_as(meaning, setting)) > volume.ghost_layer)
+    return std::nullopt;
+  return setting;
+}
+
+std::vector<Tried> tried_in_turn(compositor::ImageService& service, const Meaning& small,
+                                 const volume::VolumeDescription& volume, float termination, double enough,
+                                 int times) {
   const auto start = Clock::now();
-  const volume::Rect seen = footprint(meaning.request, meaning.request.region);
-  const int times = std::max(1, int(std::lround(std::sqrt(double(seen.pixels()) / small_image))));
-  const Meaning small{on_fewer_pixels(meaning.request, times), meaning.texels_a_step};
   std::vector<Tried> tried;
   const auto try_out = [&](volume::Method method, double texels, double patience) {
     if (!tried.empty() && milliseconds_since(start) > patience) return;
-    const Setting setting{method, texels / meaning.texels_a_step, termination};
-    volume::RenderRequest request = sampled_as(small, setting);
-    if (volume::ghost_layer_needed(volume, request) > volume.ghost_layer) return;
+    const auto setting = setting_of(small, volume, method, texels, termination);
+    if (!setting) return;
+    volume::RenderRequest request = sampled_as(small, *setting);
     service.render(request);  // prepares what depends on the table alone
     request.termination = std::nextafter(request.termination, 1.0F);  // the same request is not cast again
     const auto begin = Clock::now();
     const compositor::Rendered rendered = service.render(request);
-    tried.push_back({setting, milliseconds_since(begin) * times * times, copy_of(rendered.image)});
+    tried.push_back({*setting, milliseconds_since(begin) * times * times, copy_of(rendered.image)});
   };
   const double patience = enough > 0 ? patience_for_an_error_ms : patience_ms;
   for (const double texels : coarse_samples) try_out(volume::Method::post_classified, texels, patience);
@@ -172,7 +182,32 @@ Calibration calibrate(compositor::ImageService& service, const Meaning& meaning,
     if (last > 0 && greatest_difference(tried[last - 1].image.view(), tried[last].image.view()) < enough) break;
   }
   for (const double texels : segments_apart) try_out(volume::Method::pre_integrated, texels, patience_ms);
+  return tried;
+}
 
+/// Where each image takes what loading takes: all settings are tried together. Their costs are as their
+/// samples, of which a segment takes two.
+std::vector<Tried> tried_at_once(compositor::ImageService& service, const Meaning& small,
+                                 const volume::VolumeDescription& volume, float termination) {
+  std::vector<Tried> tried;
+  std::vector<volume::RenderRequest> requests;
+  const auto try_out = [&](volume::Method method, double texels, double samples) {
+    const auto setting = setting_of(small, volume, method, texels, termination);
+    if (!setting) return;
+    requests.push_back(sampled_as(small, *setting));
+    tried.push_back({*setting, samples / texels, {}});
+  };
+  for (const double texels : coarse_samples) try_out(volume::Method::post_classified, texels, 1);
+  for (const double texels : fine_samples) try_out(volume::Method::post_classified, texels, 1);
+  for (const double texels : segments_apart) try_out(volume::Method::pre_integrated, texels, 2);
+  std::vector<Image> images = service.images(requests);
+  for (std::size_t i = 0; i < tried.size(); ++i) tried[i].image = std::move(images[i]);
+  return tried;
+}
+
+/// Against integrals where settings differ most, and anywhere.
+std::vector<Measured> measured(compositor::ImageService& service, const Meaning& small,
+                               const std::vector<Tried>& tried) {
   const ImageView finest =
       std::ranges::min_element(tried, {}, [](const Tried& one) { return one.setting.step; })->image.view();
   std::vector<Pixel> pixels;
@@ -188,11 +223,24 @@ Calibration calibrate(compositor::ImageService& service, const Meaning& meaning,
   const std::vector<PixelIntegral> integrals =
       integrals_of(service, small.request, pixels, least_integrals, integrals_ms);
 
-  std::vector<Measured> measured;
-  measured.reserve(tried.size());
+  std::vector<Measured> all;
+  all.reserve(tried.size());
   for (const Tried& one : tried)
-    measured.push_back({one.setting, greatest_error(one.image.view(), pixels, integrals), one.ms});
-  return {front_of(std::move(measured))};
+    all.push_back({one.setting, greatest_error(one.image.view(), pixels, integrals), one.ms});
+  return all;
+}
+
+}  // namespace
+
+Calibration calibrate(compositor::ImageService& service, const Meaning& meaning,
+                      const volume::VolumeDescription& volume, float termination, double enough) {
+  const volume::Rect seen = footprint(meaning.request, meaning.request.region);
+  const int times = std::max(1, int(std::lround(std::sqrt(double(seen.pixels()) / small_image))));
+  const Meaning small{on_fewer_pixels(meaning.request, times), meaning.texels_a_step};
+  const std::vector<Tried> tried = service.loads_for_images()
+                                       ? tried_at_once(service, small, volume, termination)
+                                       : tried_in_turn(service, small, volume, termination, enough, times);
+  return {front_of(measured(service, small, tried))};
 }
 
 }  // namespace understudy::spu

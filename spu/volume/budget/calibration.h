@@ -24,7 +24,7 @@ namespace understudy::spu {
 struct Measured {
   Setting setting;
   double error = 0;  ///< greatest difference of a channel from the integral, of the rays that were looked at
-  double ms = 0;     ///< for an image of the request's own size
+  double ms = 0;  ///< for an image of the request's own size; where images are loaded for, in proportion to it
 };
 
 struct Calibration {

@@ -22,7 +22,7 @@ TEST_F(Render, ShowsInPartsWhatMemoryDoesNotHold) {
                             " -n 2"
 #endif
        }) {
-    const RgbaImage parts = image(scene + " --memory 120M" + nodes);
+    const RgbaImage parts = image(scene + " --memory 100M" + nodes);
     const Json figures = report();
     EXPECT_GT(figures["passes"]["parts"], 1) << nodes;
     EXPECT_GE(figures["passes"]["loads"], figures["passes"]["parts"]) << "no raw file tells its values";
@@ -31,14 +31,14 @@ TEST_F(Render, ShowsInPartsWhatMemoryDoesNotHold) {
       std::printf("%s: %d parts, peak of a rank %llu MiB, of the whole %llu MiB\n", nodes,
                   figures["passes"]["parts"].get<int>(), static_cast<unsigned long long>(peak >> 20U),
                   static_cast<unsigned long long>(whole_bytes >> 20U));
-      EXPECT_LE(double(peak), 1.1 * (120U << 20U));
+      EXPECT_LE(double(peak), 1.1 * (100U << 20U));
     }
     EXPECT_LE(difference(whole, parts).max, 1e-5);
   }
 }
 
 TEST_F(Render, LeavesOutPartsThatShowNothing) {
-  const std::string scene = "synthetic:200x200x200:u8:shells --size 90x90 --memory 80M --transfer-function " +
+  const std::string scene = "synthetic:200x200x200:u8:shells --size 90x90 --memory 60M --transfer-function " +
                             folder_.write("outside.json", R"({"positions": "values", "knots": [
                               {"at": 300, "colour": [1, 1, 1], "opacity": 0},
                               {"at": 400, "colour": [1, 1, 1], "opacity": 1}]})") +
@@ -58,12 +58,12 @@ TEST_F(Render, NoRankKeepsAVolumeForTheOthersBeyondItsMemory) {
   const std::string scene = "synthetic:260x260x260:u16:gyroid --transfer-function ct --size 100x80 --report " +
                             folder_.file("r.json");
   const RgbaImage whole = image(scene + " -n 2");
-  const RgbaImage halves = image(scene + " -n 2 --memory 134M");
+  const RgbaImage halves = image(scene + " -n 2 --memory 110M");
   const Json figures = report();
   EXPECT_EQ(figures["passes"]["parts"], 1);
   for (const Json& rank : figures["ranks"]) {
     std::printf("%llu MiB\n", static_cast<unsigned long long>(rank["peak_bytes"].get<std::uint64_t>() >> 20U));
-    EXPECT_LE(rank["peak_bytes"].get<double>(), 1.1 * (134U << 20U));
+    EXPECT_LE(rank["peak_bytes"].get<double>(), 1.1 * (110U << 20U));
   }
   EXPECT_LE(difference(whole, halves).max, 1e-5);
 }
@@ -84,7 +84,7 @@ TEST_F(Render, KeepsAnErrorInPartsAsInOne) {
       "synthetic:120x120x120:u16:lobes --transfer-function vessels --size 96x80 --report " +
       folder_.file("r.json");
   const RgbaImage exact = image(scene + " --step 0.03");
-  for (const char* memory : {"", " --memory 69M"}) {
+  for (const char* memory : {"", " --memory 45M"}) {
     const RgbaImage shown = image(scene + " --error 2/255" + memory);
     const Json figures = report();
     EXPECT_EQ(figures["passes"]["parts"] > 1, *memory != '\0');
@@ -113,7 +113,7 @@ TEST_F(Render, SaysWhatMemoryIsTooLittle) {
   Result result = render("synthetic:64x64x64 --memory 20M");
   EXPECT_NE(result.status, 0);
   EXPECT_THAT(result.output, HasSubstr("less than a rank takes without a volume"));
-  result = render("synthetic:64x64x64 --size 16x16 --memory 67300000");
+  result = render("synthetic:64x64x64 --size 16x16 --memory 42150000");
   EXPECT_NE(result.status, 0);
   EXPECT_THAT(result.output, HasSubstr("no part of this volume fits"));
   result = render("synthetic:64x64x64 --memory 2Q");

@@ -59,7 +59,7 @@ class ImageService {
 
   /// The images of requests with one camera, in their order. What has to be loaded for one is loaded once.
   virtual std::vector<volume::Image> images(std::span<const volume::RenderRequest> requests);
-  /// Whether an image takes what loading takes, however few its samples are.
+  /// Whether each image loads parts of its volume, so that most of its time is that of loading.
   virtual bool loads_for_images() const { return false; }
 
   /// What pixels of the request would show if its samples were taken ever more densely

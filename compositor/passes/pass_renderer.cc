@@ -169,6 +169,7 @@ void PassRenderer::add_image_figures() {
 }
 
 std::vector<PassRenderer::Composite> PassRenderer::composites(std::span<const RenderRequest> requests) {
+  if (requests.empty()) return {};
   volume::VolumeDescription whole = load_.volume;
   whole.part.reset();
   std::vector<Composite> composites;

@@ -28,8 +28,9 @@ std::string_view number_at(const std::string& text, std::size_t at) {
 std::vector<std::string> matches_of(const std::string& pattern) {
   glob_t found{};
   std::vector<std::string> files;
-  if (::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &found) == 0)
+  if (::glob(pattern.c_str(), GLOB_NOSORT | GLOB_MARK, nullptr, &found) == 0)
     files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+  std::erase_if(files, [](const std::string& file) { return file.ends_with('/'); });
   ::globfree(&found);
   std::ranges::sort(files, comes_before);
   return files;

@@ -2,6 +2,7 @@
 // Time-dependent data: files that hold one time step each.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -11,9 +12,9 @@ namespace understudy::volume {
 constexpr std::size_t max_time_steps = 100'000;
 
 /// The files that `names` mean, which are paths, patterns as the shell has them ("step_*.vti",
-/// "step_[0-4]?.nrrd"), or synthetic volumes. What a pattern means comes in the order of the numbers in the
-/// names: step_9 before step_10. A name that is there means itself, whatever is in it. Throws FileError where a
-/// pattern means nothing.
+/// "step_[0-4]?.nrrd"), or synthetic volumes. Names keep their order; what a pattern means comes in the order
+/// of the numbers in the names, step_9 before step_10, without folders. A name that is there means itself,
+/// whatever is in it. Throws FileError where a pattern means nothing.
 std::vector<std::string> files_of_series(const std::vector<std::string>& names);
 
 /// Whether `a` comes before `b`: runs of digits by their value, all else byte by byte.

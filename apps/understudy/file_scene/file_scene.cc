@@ -120,8 +120,8 @@ compositor::LoadRequest FileScene::load_of(int step) const {
 namespace {
 
 /// What the first file is, with the values of all of them; they have one size, type and spacing.
-volume::FileDescription described_series(const std::vector<std::string>& files,
-                                         const volume::FileHints& hints) {
+volume::FileDescription described_series(const std::vector<std::string>& files, const volume::FileHints& hints,
+                                         bool spacing_is_given) {
   volume::FileDescription first;
   for (const std::string& file : files) {
     const volume::FileDescription one = volume::open_volume(file, hints)->description();
@@ -135,6 +135,13 @@ volume::FileDescription described_series(const std::vector<std::string>& files,
                       "one size and type",
                       file, one.size[0], one.size[1], one.size[2], volume::name_of(one.type), files.front(),
                       first.size[0], first.size[1], first.size[2], volume::name_of(first.type)));
+    if (one.spacing != first.spacing && !spacing_is_given)
+      throw volume::FileError(fmt::format(
+          "{}: its scalars lie apart otherwise than those of {}; give steps with one spacing, or --spacing",
+          file, files.front()));
+    if (one.detail && first.detail && one.detail->volume_size != first.detail->volume_size)
+      throw volume::FileError(
+          fmt::format("{}: a level of a volume of another size than that of {}", file, files.front()));
     if (one.scale != first.scale || one.offset != first.offset)
       throw volume::FileError(
           fmt::format("{}: its scalars mean other values than those of {}; give steps with one scale", file,
@@ -160,7 +167,7 @@ FileScene scene_of(const SceneArguments& arguments) {
                                             arguments.time_step, files.size()));
   volume::FileHints hints = file_hints(arguments.raw);
   hints.level = arguments.level;
-  FileScene scene = scene_of(arguments, described_series(files, hints));
+  FileScene scene = scene_of(arguments, described_series(files, hints, !arguments.spacing.empty()));
   scene.load.file = files[std::size_t(arguments.time_step)];
   scene.load.hints = hints;
   scene.series = std::move(files);

@@ -2,92 +2,148 @@
 #include "apps/understudy/file_scene/time_steps.h"
 
 #include <algorithm>
+#include <limits>
+#include <tuple>
 
 #include "compositor/service/limits.h"
+#include "volume/cell_lattice.h"
 
 namespace understudy::launcher {
+namespace {
 
 using compositor::RankLoad;
 
-namespace {
-
-std::uint64_t most_brick_bytes(const std::vector<RankLoad>& ranks) {
-  std::uint64_t most = 0;
-  for (const RankLoad& rank : ranks) most = std::max(most, rank.brick_bytes);
-  return most;
+std::uint64_t product(std::uint64_t bytes, int ranks) {
+  constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+  return bytes > most / std::uint64_t(ranks) ? most : bytes * std::uint64_t(ranks);
 }
 
 }  // namespace
+
+TimeSteps::TimeSteps(compositor::LoadingService& service, const FileScene& scene, const VolumeMemory& memory)
+    : service_(service), scene_(scene), most_bytes_(memory.bytes), of_each_rank_(memory.of_each_process) {
+  if (!of_each_rank_) most_bytes_ = product(memory.bytes, std::max(1, service.nodes()));
+}
+
+compositor::LoadRequest TimeSteps::load_of(int step) const {
+  compositor::LoadRequest load = scene_.load_of(step);
+  // A part is divided among all ranks; a whole volume one of them may keep for the others.
+  if (of_each_rank_ && service_.nodes() > 1) load.volume.part = volume::shown_cells(load.volume);
+  return load;
+}
 
 std::size_t TimeSteps::loaded() const {
   return std::size_t(std::ranges::count_if(steps_, [](const auto& entry) { return entry.second.complete; }));
 }
 
-/// As large as the largest that is there.
-std::uint64_t TimeSteps::bytes_of_a_step() const {
-  std::uint64_t most = 0;
-  for (const auto& [number, step] : steps_)
-    if (step.complete) most = std::max(most, most_brick_bytes(step.ranks));
-  return most;
-}
-
-bool TimeSteps::make_room(bool whatever_room) {
-  // Beside what an application may hold, the one that is begun.
-  constexpr std::size_t most_steps = compositor::limits::max_volumes_per_client - 1;
-  while (true) {
-    std::uint64_t held = bytes_of_a_step();
-    for (const auto& [number, step] : steps_)
-      held += step.complete ? most_brick_bytes(step.ranks) : bytes_of_a_step();
-    if (steps_.size() <= most_steps && held <= bytes_of_rank_) return true;
-    const auto oldest = std::ranges::min_element(steps_, {}, [&](const auto& entry) {
-      return entry.first == shown_ && !whatever_room ? shows_ + 1 : entry.second.shown_at;
-    });
-    if (oldest == steps_.end()) return whatever_room;
-    if (oldest->first == shown_ && !whatever_room) return false;
-    service_.forget_volume(scene_.load_of(oldest->first).volume.id);
-    steps_.erase(oldest);
+std::uint64_t TimeSteps::bytes_of(const std::vector<RankLoad>& ranks) const {
+  std::uint64_t most = 0, all = 0;
+  for (const RankLoad& rank : ranks) {
+    most = std::max(most, rank.brick_bytes);
+    all += rank.brick_bytes;
   }
+  return of_each_rank_ ? most : all;
 }
 
-bool TimeSteps::begin(int step, bool whatever_room) {
-  if (steps_.contains(step)) return true;
-  if (!make_room(whatever_room)) return false;
-  std::vector<RankLoad> ranks = service_.begin_load(scene_.load_of(step));
+void TimeSteps::forget(int step) {
+  service_.forget_volume(volume_of(step));
+  steps_.erase(step);
+  if (shown_ == step) shown_.reset();
+}
+
+std::optional<int> TimeSteps::least_wanted(int step, std::span<const int> in_use) const {
+  std::optional<int> least;
+  const auto rank = [&](int number) {
+    const Step& of = steps_.at(number);
+    return std::tuple(of.complete, of.shown_at, number);
+  };
+  for (const auto& [number, unused] : steps_) {
+    if (number == step || std::ranges::find(in_use, number) != in_use.end()) continue;
+    if (!least || rank(number) < rank(*least)) least = number;
+  }
+  return least;
+}
+
+bool TimeSteps::make_room(int step, std::span<const int> in_use) {
+  const auto fits = [&] {
+    std::uint64_t held = largest_step_;
+    for (const auto& [number, of] : steps_) held += of.complete ? bytes_of(of.ranks) : largest_step_;
+    // Beside what an application may hold, the one that is begun.
+    return steps_.size() < compositor::limits::max_volumes_per_client && held <= most_bytes_;
+  };
+  while (!fits()) {
+    const auto least = least_wanted(step, in_use);
+    if (!least) return false;
+    forget(*least);
+  }
+  return true;
+}
+
+void TimeSteps::begin(int step) {
+  std::vector<RankLoad> ranks = service_.begin_load(load_of(step));
   const bool complete = std::ranges::all_of(ranks, &RankLoad::done);
   steps_[step] = {std::move(ranks), complete, shows_};
-  return true;
 }
 
 void TimeSteps::read_on(int step) {
   Step& known = steps_.at(step);
   try {
-    known.ranks = service_.continue_load(scene_.load_of(step).volume.id);
-  } catch (...) {
-    steps_.erase(step);
+    known.ranks = service_.continue_load(volume_of(step));
+  } catch (const compositor::RequestRefused&) {
+    forget(step);
     throw;
   }
   known.complete = std::ranges::all_of(known.ranks, &RankLoad::done);
+  if (known.complete) largest_step_ = std::max(largest_step_, bytes_of(known.ranks));
 }
 
 void TimeSteps::show(int step, const Progress& progress) {
-  begin(step, true);
-  while (!steps_.at(step).complete) {
-    progress(steps_.at(step).ranks);
-    read_on(step);
+  while (true) {
+    try {
+      if (!steps_.contains(step)) {
+        make_room(step, {});
+        begin(step);
+      }
+      while (!steps_.at(step).complete) {
+        progress(steps_.at(step).ranks);
+        read_on(step);
+      }
+      break;
+    } catch (const compositor::RequestRefused&) {
+      // The service may have less room than it was believed to have.
+      const auto least = failed_.contains(step) ? std::nullopt : least_wanted(step, {});
+      if (!least) {
+        failed_.insert(step);
+        throw;
+      }
+      forget(*least);
+    }
   }
-  progress(steps_.at(step).ranks);
+  failed_.erase(step);
   shown_ = step;
   steps_.at(step).shown_at = ++shows_;
+  progress(steps_.at(step).ranks);
 }
 
-bool TimeSteps::read_ahead() {
-  const int next = (shown_ + 1) % int(scene_.series.size());
-  if (next == shown_) return false;
+bool TimeSteps::read_ahead(std::span<const int> in_use) {
+  if (!shown_ || scene_.series.size() < 2) return false;
+  const int next = (*shown_ + 1) % int(scene_.series.size());
   const auto known = steps_.find(next);
-  if (known != steps_.end() && known->second.complete) return false;
-  if (known == steps_.end()) return begin(next, false);
-  read_on(next);
-  return true;
+  if (failed_.contains(next) || (known != steps_.end() && known->second.complete)) return false;
+  try {
+    if (known != steps_.end()) {
+      read_on(next);
+      return true;
+    }
+    std::vector<int> kept(in_use.begin(), in_use.end());
+    kept.push_back(*shown_);
+    if (!make_room(next, kept)) return false;
+    begin(next);
+    return true;
+  } catch (const compositor::RequestRefused&) {
+    failed_.insert(next);  // it is spoken of once it is wanted
+    return false;
+  }
 }
 
 }  // namespace understudy::launcher

@@ -120,7 +120,10 @@ std::string refusal_message(std::uint64_t sequence, std::string_view reason) {
   return dumped({{"kind", "impossible"}, {"sequence", sequence}, {"text", reason}});
 }
 
-std::vector<std::byte> image_message(const ViewState& state, const ShownVolume::Drawn& drawn) {
+std::vector<std::byte> image_message(const FileScene& scene, const ViewState& state,
+                                     const ShownVolume::Drawn& drawn) {
+  const std::string name =
+      std::filesystem::path(scene.series[std::size_t(state.time_step())]).filename().string();
   const Clock::time_point start = Clock::now();
   const std::vector<std::byte> image =
       state.lossless() ? png_of(drawn.image) : jpeg_of(drawn.image, moving_quality);
@@ -131,6 +134,7 @@ std::vector<std::byte> image_message(const ViewState& state, const ShownVolume::
               {"width", drawn.image.width},
               {"height", drawn.image.height},
               {"time_step", state.time_step()},
+              {"name", name},
               {"format", state.lossless() ? "png" : "jpeg"},
               {"camera", json_of(state.camera())},
               {"matrix", drawn.request.texture_to_clip},
@@ -139,6 +143,7 @@ std::vector<std::byte> image_message(const ViewState& state, const ShownVolume::
                {{"render", drawn.counts.render_ms},
                 {"composite", drawn.counts.composite_ms},
                 {"image", drawn.ms},
+                {"load", drawn.load_ms},
                 {"pack", std::chrono::duration<double, std::milli>(Clock::now() - start).count()}}}});
   std::vector<std::byte> message(4 + head.size() + image.size());
   for (std::size_t i = 0; i < 4; ++i) message[i] = std::byte(head.size() >> 8 * i & 255U);

@@ -30,6 +30,7 @@ std::string figures_message(std::uint64_t sequence, const FileScene& scene,
 std::string refusal_message(std::uint64_t sequence, std::string_view reason);
 
 /// The head's length (four bytes, the lowest first), the head, and the image: PNG, or JPEG.
-std::vector<std::byte> image_message(const ViewState& state, const ShownVolume::Drawn& drawn);
+std::vector<std::byte> image_message(const FileScene& scene, const ViewState& state,
+                                     const ShownVolume::Drawn& drawn);
 
 }  // namespace understudy::launcher

@@ -37,6 +37,10 @@ void ShownVolume::load(const std::function<void(const std::vector<compositor::Ra
     progress(now);
   });
   values_ = texel_figures(ranks);
+  if (const auto& values = scene_.file.values) {
+    values_.low = (*values)[0];
+    values_.high = (*values)[1];
+  }
   histogram_ = measured_histogram();
 }
 
@@ -58,23 +62,30 @@ ShownVolume::Histogram ShownVolume::measured_histogram() {
   const double a = mapping.normalised(low), b = mapping.normalised(high);
   result.low = low;
   result.high = high;
-  result.counts = service_->histogram(steps_->shown_load().volume.id, {std::min(a, b), std::max(a, b), count});
+  result.counts =
+      service_->histogram(steps_->volume_of(*steps_->shown()), {std::min(a, b), std::max(a, b), count});
   if (a > b) std::ranges::reverse(result.counts);  // texels fall where values rise
   return result;
 }
 
-ShownVolume::Drawn ShownVolume::draw(const ViewState& state) {
-  if (state.time_step() != steps_->shown()) {
-    image_ = {};
-    steps_->show(state.time_step(), [](const std::vector<compositor::RankLoad>&) {});
-  }
-  request_ = state.request(scene_, values_);
-  request_.volume = steps_->shown_load().volume.id;
+ShownVolume::Drawn ShownVolume::draw(const ViewState& state, const TimeSteps::Progress& progress) {
+  image_ = {};
   const Clock::time_point start = Clock::now();
+  steps_->show(state.time_step(), progress);
+  request_ = state.request(scene_, values_);
+  request_.volume = steps_->volume_of(state.time_step());
+  const Clock::time_point loaded = Clock::now();
   const compositor::Rendered rendered = service_->render(request_);
   image_ = rendered.image;
   return {over_black(image_, request_.window), request_, rendered.counts,
-          std::chrono::duration<double, std::milli>(Clock::now() - start).count()};
+          std::chrono::duration<double, std::milli>(Clock::now() - loaded).count(),
+          std::chrono::duration<double, std::milli>(loaded - start).count()};
+}
+
+bool ShownVolume::read_ahead(std::span<const int> in_use) {
+  if (scene_.series.size() < 2) return false;
+  image_ = {};
+  return steps_->read_ahead(in_use);
 }
 
 std::optional<ShownVolume::Exactness> ShownVolume::exactness() {
@@ -86,20 +97,13 @@ std::optional<ShownVolume::Exactness> ShownVolume::exactness() {
                    integrals.size()};
 }
 
-void ShownVolume::keep_image() {
-  if (image_.rgba.data() == kept_.data()) return;
-  kept_.assign(image_.rgba.begin(), image_.rgba.end());
-  image_.rgba = kept_;
-}
-
-bool ShownVolume::read_ahead() {
-  keep_image();
-  return steps_->read_ahead();
-}
-
 std::vector<compositor::RankLoad> ShownVolume::ranks() {
-  keep_image();
-  return service_->continue_load(steps_->shown_load().volume.id);
+  // The image of the service is valid until the next call but integrals().
+  if (image_.rgba.data() != kept_.data()) {
+    kept_.assign(image_.rgba.begin(), image_.rgba.end());
+    image_.rgba = kept_;
+  }
+  return service_->continue_load(request_.volume);
 }
 
 }  // namespace understudy::launcher

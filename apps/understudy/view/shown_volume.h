@@ -6,12 +6,13 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "apps/understudy/cli/loading_nodes.h"
-#include "apps/understudy/cli/memory_option.h"
 #include "apps/understudy/file_scene/file_scene.h"
 #include "apps/understudy/file_scene/time_steps.h"
+#include "apps/understudy/file_scene/volume_memory.h"
 #include "apps/understudy/view/image_encoding.h"
 #include "apps/understudy/view/view_state.h"
 #include "volume/frame_counts.h"
@@ -39,12 +40,14 @@ class ShownVolume {
     RgbImage image;
     volume::RenderRequest request;
     volume::FrameCounts counts;
-    double ms = 0;  ///< to render and to composite, as it was waited for
+    double ms = 0;       ///< to render and to composite, as it was waited for
+    double load_ms = 0;  ///< before that, to read its time step
   };
-  /// A time step that is not there is read first.
-  Drawn draw(const ViewState& state);
-  /// Reads some of the time step that comes next; false: there is nothing more to read.
-  bool read_ahead();
+  /// A time step that is not there is read first; what `progress` throws meanwhile is thrown on.
+  Drawn draw(const ViewState& state, const TimeSteps::Progress& progress);
+  /// Reads some of the time step that comes next, without forgetting those in use; false: there is nothing more
+  /// to read. What was drawn last has no exactness() afterwards.
+  bool read_ahead(std::span<const int> in_use);
 
   struct Exactness {
     double error = 0;  ///< greatest difference of a channel from the integral, of the rays that were looked at
@@ -57,6 +60,7 @@ class ShownVolume {
   /// What each rank has, and what its part of the last image took.
   std::vector<compositor::RankLoad> ranks();
   int nodes() const { return service_->nodes(); }
+  /// By which colours go: of the first step that was shown, or of all where their files tell them.
   const volume::TexelFigures& values() const { return values_; }
 
   struct Histogram {
@@ -68,8 +72,6 @@ class ShownVolume {
 
  private:
   Histogram measured_histogram();
-  /// Before a call after which the service's image is gone.
-  void keep_image();
 
   const FileScene& scene_;
   ServiceMaker make_;

@@ -43,8 +43,7 @@ int view(const ViewArguments& arguments) {
   widen_ghost_layer(scene);
   const RankMemory memory = [&](int ranks) {
     return memory_for_volume(arguments.memory, ranks, ranks_are_here(arguments.nodes),
-                             std::size_t(scene.image.width) * std::size_t(scene.image.height))
-        .bytes;
+                             std::size_t(scene.image.width) * std::size_t(scene.image.height));
   };
   with_loading_nodes(arguments.nodes, [&](const ServiceMaker& make, const std::stop_token& stop) {
     if (arguments.port)
@@ -63,7 +62,7 @@ void add_view(CLI::App& app, std::function<int()>& chosen) {
   add_scene_options(*command, arguments->scene);
   add_loading_nodes(*command, arguments->nodes);
   add_memory_option(*command, arguments->memory,
-                    "what each rank may take: of a series as many time steps stay loaded");
+                    "what each rank may take: as many time steps of a series stay loaded as fit");
   CLI::Option* web = command
                          ->add_option("--web", arguments->port,
                                       "show in browsers, by the link that is printed; 0 takes any free port")
@@ -82,8 +81,10 @@ void add_view(CLI::App& app, std::function<int()>& chosen) {
           ->excludes(web);
   command->add_option("--orbit", arguments->script.orbit, "degrees of azimuth from one frame to the next")
       ->needs(frames);
-  command->add_flag("--play", arguments->script.plays,
-                    "of a series: each frame shows the next time step, in a window that is begun so");
+  command
+      ->add_flag("--play", arguments->script.plays,
+                 "of a series: start the window playing; with --frames, each frame shows the next time step")
+      ->excludes(web);
   command->add_option("--save", arguments->script.save, "the last frame")
       ->type_name("P.png")
       ->needs(frames)

@@ -76,6 +76,9 @@ class WebView {
     bool is_sent_one = false;  ///< which has not left yet
   };
 
+  /// An image that nobody waits for any longer.
+  struct Superseded {};
+
   /// Of an image at rest that its viewer has already.
   struct ErrorCheck {
     Viewer viewer = 0;
@@ -212,6 +215,8 @@ class WebView {
       refuse(viewer, *state, refused.what());
     } catch (const std::invalid_argument& error) {
       refuse(viewer, *state, error.what());
+    } catch (const Superseded&) {
+      sent(viewer);
     } catch (const compositor::ServiceLost&) {
       const std::lock_guard lock(mutex_);
       if (const auto session = sessions_.find(viewer); session != sessions_.end()) {
@@ -222,12 +227,23 @@ class WebView {
     }
   }
 
+  /// While the time step of an image is read: whether the viewer wants another one by now, or nothing.
+  void stop_if_superseded(Viewer viewer, const ViewState& state) {
+    if (stop_.stop_requested()) throw compositor::ServiceLost("stopped");
+    const std::lock_guard lock(mutex_);
+    const auto session = sessions_.find(viewer);
+    if (session == sessions_.end() ||
+        (session->second.wants_image && session->second.state.time_step() != state.time_step()))
+      throw Superseded();
+  }
+
   void draw_for(Viewer viewer, const ViewState& state) {
     const Clock::time_point start = Clock::now();
-    const ShownVolume::Drawn drawn = volume_.draw(state);
-    server_.send_image(viewer, image_message(state, drawn));
+    const ShownVolume::Drawn drawn = volume_.draw(
+        state, [&](const std::vector<compositor::RankLoad>&) { stop_if_superseded(viewer, state); });
+    server_.send_image(viewer, image_message(scene_, state, drawn));
     reads_ahead_ = true;
-    const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count() - drawn.load_ms;
     {
       const std::lock_guard lock(mutex_);
       const auto session = sessions_.find(viewer);
@@ -256,13 +272,13 @@ class WebView {
     if (seen.rays >= enough_rays || more->rays == 0) error_check_.reset();
   }
 
-  /// A time step that cannot be read is spoken of once it is wanted.
   void read_ahead() {
-    try {
-      reads_ahead_ = volume_.read_ahead();
-    } catch (const compositor::RequestRefused&) {
-      reads_ahead_ = false;
+    std::vector<int> in_use;
+    {
+      const std::lock_guard lock(mutex_);
+      for (const auto& [viewer, session] : sessions_) in_use.push_back(session.state.time_step());
     }
+    reads_ahead_ = volume_.read_ahead(in_use);
   }
 
   void refuse(Viewer viewer, const ViewState& state, const char* reason) {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "apps/understudy/cli/loading_nodes.h"
-#include "apps/understudy/cli/memory_option.h"
 #include "apps/understudy/file_scene/file_scene.h"
+#include "apps/understudy/file_scene/volume_memory.h"
 
 namespace understudy::launcher {
 

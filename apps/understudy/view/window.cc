@@ -57,7 +57,7 @@ class Window {
          const std::stop_token& stop, const WindowScript& script)
       : stop_(stop),
         script_(script),
-        plays_(script.plays),
+        plays_(script.plays && scene.series.size() > 1),
         volume_(scene, make, memory),
         state_(scene),
         window_(SDL_CreateWindow(name().c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED,
@@ -88,12 +88,14 @@ class Window {
 
  private:
   void load() {
-    volume_.load([&](const std::vector<compositor::RankLoad>& ranks) {
-      say(progress_text(ranks));
-      hear(0);
-      if (over_ || stop_.stop_requested()) throw compositor::ServiceLost("the window is closed");
-    });
+    volume_.load([&](const std::vector<compositor::RankLoad>& ranks) { go_on_loading(ranks); });
     due_ = true;
+  }
+
+  void go_on_loading(const std::vector<compositor::RankLoad>& ranks) {
+    if (!std::ranges::all_of(ranks, &compositor::RankLoad::done)) say(progress_text(ranks));
+    hear(0);
+    if (over_ || stop_.stop_requested()) throw compositor::ServiceLost("the window is closed");
   }
 
   void recover(const std::string& why) {
@@ -113,11 +115,10 @@ class Window {
   void play(int frame) {
     ViewMessage message;
     message.still = frame + 1 == script_.frames;
-    if (frame > 0) {
-      message.camera = state_.camera();
-      message.camera->orbit.azimuth += script_.orbit;
-      if (plays_) message.time_step = step_after(1);
-    }
+    // Of the frame's number alone: after nodes were lost it is drawn again.
+    message.camera = ViewCamera{volume_.scene().image.camera, {}};
+    message.camera->orbit.azimuth += frame * script_.orbit;
+    if (plays_) message.time_step = step_from(volume_.scene().time_step, frame);
     state_.apply(message);
     const ShownVolume::Drawn drawn = draw();
     hear(0);
@@ -135,7 +136,12 @@ class Window {
     hear(due_ || reads_ahead_ ? 0 : wait_ms);
     if (due_) {
       due_ = false;
-      draw();
+      try {
+        draw();
+      } catch (const compositor::RequestRefused& refused) {
+        plays_ = false;
+        return say(refused.what());
+      }
       reads_ahead_ = true;
       if (plays_) return play_on();
       if (state_.still())
@@ -145,23 +151,23 @@ class Window {
       state_.apply({});
       due_ = true;
     } else if (reads_ahead_) {
-      reads_ahead_ = volume_.read_ahead();
+      reads_ahead_ = volume_.read_ahead({});
     }
   }
 
   void play_on() {
     ViewMessage message;
     message.still = false;
-    message.time_step = step_after(1);
+    message.time_step = step_from(state_.time_step(), 1);
     moved_ = Clock::now();
     state_.apply(message);
     due_ = true;
   }
 
-  /// Behind the last time step comes the first.
-  int step_after(int steps) const {
+  /// After the last time step comes the first.
+  int step_from(int step, int steps) const {
     const auto count = int(volume_.scene().series.size());
-    return (state_.time_step() + steps + count) % count;
+    return ((step + steps) % count + count) % count;
   }
 
   std::string name() const {
@@ -171,9 +177,11 @@ class Window {
 
   ShownVolume::Drawn draw() {
     const Clock::time_point start = Clock::now();
-    ShownVolume::Drawn drawn = volume_.draw(state_);
+    const ViewState state = state_;  // what is heard while its step is read is of the next image
+    ShownVolume::Drawn drawn =
+        volume_.draw(state, [&](const std::vector<compositor::RankLoad>& ranks) { go_on_loading(ranks); });
     show(drawn.image);
-    drawn_ms_ = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    drawn_ms_ = std::chrono::duration<double, std::milli>(Clock::now() - start).count() - drawn.load_ms;
     state_.took({drawn.image.width, drawn.image.height}, drawn_ms_);
     last_ms_ = drawn_ms_;
     say(fmt::format("{:.0f} ms, {} x {}", drawn_ms_, drawn.image.width, drawn.image.height));
@@ -240,6 +248,7 @@ class Window {
         break;
       }
       case SDL_KEYDOWN:
+        if (event.key.repeat != 0 && event.key.keysym.sym == SDLK_SPACE) return;
         if (!take_key(event.key.keysym.sym, message)) return;
         break;
       default:
@@ -282,10 +291,10 @@ class Window {
         message.camera = ViewCamera{volume_.scene().image.camera, {}};
         return true;
       case SDLK_PAGEDOWN:
-        message.time_step = step_after(1);
+        message.time_step = step_from(state_.time_step(), 1);
         return true;
       case SDLK_PAGEUP:
-        message.time_step = step_after(-1);
+        message.time_step = step_from(state_.time_step(), -1);
         return true;
       case SDLK_SPACE:
         plays_ = !plays_ && volume_.scene().series.size() > 1;

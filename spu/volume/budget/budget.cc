@@ -62,6 +62,7 @@ std::optional<volume::RenderRequest> Budget::request(
   meaning_ = std::get<Meaning>(std::move(meaning));
   const MeasuredFor now{volume.id, volume.version, service_generation, own.classification};
   if (measured_for_ != now) {
+    times_are_known_ = !service.loads_for_images();
     calibration_ = calibrate(service, meaning_, volume, termination_for(asked_), asked_.error / 3);
     measured_for_ = now;
     table_.reset();
@@ -69,7 +70,7 @@ std::optional<volume::RenderRequest> Budget::request(
     choose();
     if (asked_.error > 0) {
       prove(service);
-      if (asked_.may_halve && service.nodes() > 1) try_halves(service);
+      if (asked_.may_halve && service.nodes() > 1 && !service.loads_for_images()) try_halves(service);
     }
     looked_at_ = Clock::now();
   }
@@ -262,9 +263,8 @@ void Budget::tell(BudgetCounters& counters) const {
   std::string note;
   // A finer one would have been taken.
   if (asked_.error > 0 && worst_ > asked_.error)
-    note = fmt::format(
-        "the error that is asked for cannot be kept: {:.2g} is the best there is here, at {:.3g} ms an image",
-        worst_, ms_);
+    note = fmt::format("the error that is asked for cannot be kept: {:.2g} is the best there is here{}", worst_,
+                       times_are_known_ ? fmt::format(", at {:.3g} ms an image", ms_) : "");
   if (!(asked_.error > 0) && ms_ > asked_.ms && chosen_ == 0)
     note = fmt::format("the time that is asked for cannot be kept: {:.3g} ms is the least there is here", ms_);
   put_text(counters.note, note);

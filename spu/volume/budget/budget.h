@@ -89,6 +89,7 @@ class Budget {
   double credit_ms_ = 0;  ///< that looking may take
   double ms_a_ray_ = 1;   ///< that it did take
   double ms_ = 0;         ///< of an image, smoothed
+  bool times_are_known_ = true;
   int frames_as_chosen_ = 0;
 };
 

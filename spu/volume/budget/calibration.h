@@ -24,7 +24,8 @@ namespace understudy::spu {
 struct Measured {
   Setting setting;
   double error = 0;  ///< greatest difference of a channel from the integral, of the rays that were looked at
-  double ms = 0;  ///< for an image of the request's own size; where images are loaded for, in proportion to it
+  double ms =
+      0;  ///< for an image of the request's own size; a relative cost where the service loads for images
 };
 
 struct Calibration {

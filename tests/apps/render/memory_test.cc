@@ -89,6 +89,8 @@ TEST_F(Render, KeepsAnErrorInPartsAsInOne) {
     const Json figures = report();
     EXPECT_EQ(figures["passes"]["parts"] > 1, *memory != '\0');
     ASSERT_TRUE(figures["budget"].is_object());
+    // For their values, two questions of calibration, two of each proof, and the image.
+    EXPECT_LE(figures["passes"]["loads"], 10 * figures["passes"]["parts"].get<int>());
     EXPECT_LE(figures["budget"]["measured"], 2 / 255.0);
     const double apart = difference(exact, shown).max;
     std::printf("%d parts: asked %.4f, measured %.4f, all pixels %.4f, %s\n",

@@ -5,6 +5,7 @@ import {TransferEditor, colourIn, hexOf} from '/editor.js';
 import {colourOf, drawBoxes} from '/overlay.js';
 
 const rest_ms = 150;       // after the last move the image at rest is asked for
+const rest_wait_ms = 500;  // between time steps, for an image at rest of each
 const most_side = 4096;    // of an image, as the program has it
 const wheel_step = 1.0015; // for one unit of a wheel's way
 
@@ -40,7 +41,8 @@ function ask(part, moves) {
   asked = {...asked, ...part};
   moving = moves;
   clearTimeout(rest_timer);
-  if (moves) rest_timer = setTimeout(() => ask({}, false), rest_ms);
+  // While a series plays, the next step comes instead of the same one at rest.
+  if (moves && !(plays && wait_ms() < rest_wait_ms)) rest_timer = setTimeout(() => ask({}, false), rest_ms);
   send();
   tellWhetherBusy();
 }
@@ -91,7 +93,7 @@ let last_ms = 0;
 function answered(number) {
   if (!on_its_way || number < on_its_way.sequence) return;
   last_ms = performance.now() - on_its_way.since;
-  took_ms = last_ms;
+  took_ms = Math.max(0, last_ms - (shown?.ms.load ?? 0));
   on_its_way = null;
   playOn();
   send();
@@ -115,6 +117,7 @@ function hear(message) {
     document.documentElement.dataset.figures = message.sequence;
   } else if (message.kind === 'impossible') {
     element('exactness').textContent = message.text;
+    play(false);
     answered(message.sequence);
   }
 }
@@ -253,7 +256,7 @@ image.addEventListener('keydown', event => {
   if (turns[event.key]) ask({rotate: [[0, 0], turns[event.key]]}, true);
   else if (volume?.time_steps > 1 && event.key === 'PageUp') goTo(Number(element('time-step').value) - 1);
   else if (volume?.time_steps > 1 && event.key === 'PageDown') goTo(Number(element('time-step').value) + 1);
-  else if (volume?.time_steps > 1 && event.key === ' ') play(!plays);
+  else if (volume?.time_steps > 1 && event.key === ' ') { if (!event.repeat) play(!plays); }
   else if (event.key === '+' || event.key === '-') ask({zoom: {by: event.key === '+' ? 1.15 : 1 / 1.15, at: [0, 0]}}, true);
   else return;
   event.preventDefault();
@@ -284,6 +287,7 @@ element('control-point-remove').addEventListener('click', () => editor.remove())
 let step_asked_at = 0;
 
 function goTo(time_step) {
+  if (!volume) return;
   const count = volume.time_steps;
   element('time-step').value = (time_step + count) % count;
   step_asked_at = performance.now();
@@ -291,20 +295,29 @@ function goTo(time_step) {
 }
 
 function tellTime() {
-  element('time-text').textContent = `${shown.time_step} of 0 to ${volume.time_steps - 1}`;
+  if (!volume) return;
+  element('time-text').textContent = `step ${shown.time_step} (0 to ${volume.time_steps - 1})`;
+  element('name').textContent = shown.name;
+  document.title = `${shown.name} · Understudy`;
   document.documentElement.dataset.timeStep = shown.time_step;
 }
 
-// Behind the last time step comes the first; no step is left out, however slow they are.
+// Between two time steps, as the user wants it.
+function wait_ms() {
+  const pace = Number(element('pace').value);
+  return pace ? 1000 / pace : 0;
+}
+
+// After the last time step comes the first; no step is left out, however slow they are.
 function playOn() {
   clearTimeout(next_step_timer);
   if (!plays || !volume) return;
-  const pace = Number(element('pace').value), wait = pace ? 1000 / pace : 0;
   next_step_timer = setTimeout(() => { if (plays && volume) goTo(Number(element('time-step').value) + 1); },
-                               Math.max(0, step_asked_at + wait - performance.now()));
+                               Math.max(0, step_asked_at + wait_ms() - performance.now()));
 }
 
 function play(wanted) {
+  if (plays && !wanted && volume) ask({}, false);
   plays = wanted;
   element('play').textContent = plays ? 'Pause' : 'Play';
   playOn();
@@ -336,7 +349,7 @@ for (const id of ['surface-at', 'surface-colour', 'surface-opacity'])
 element('light').addEventListener('change', event => ask({light: event.target.checked}, false));
 element('step').addEventListener('input', event => { tellControls(); ask({step: Number(event.target.value)}, true); });
 element('lossless').addEventListener('change', event => ask({lossless: event.target.checked}, false));
-element('gather').addEventListener('click', () => { if (volume) ask({camera: volume.camera}, false); });
+element('home').addEventListener('click', () => { if (volume) ask({camera: volume.camera}, false); });
 element('shows-boxes').addEventListener('change', overlay);
 
 // ---- the conversation

@@ -3,7 +3,7 @@
 """page_test.py PROGRAMS OUT: the page of `understudy view --web` in a real browser, without a screen.
 
 It is opened by its link, turned with the mouse, its transfer function is edited, a surface is lit, boxes are drawn, a node
-is killed; screenshots go to OUT. Ends with 77 where Chromium or its driver is missing.
+is killed, a series is played; screenshots go to OUT. Ends with 77 where Chromium or its driver is missing.
 """
 
 import os
@@ -28,6 +28,7 @@ except ImportError:
 PROGRAMS, OUT = Path(sys.argv[1]), Path(sys.argv[2])
 PATIENCE = 60
 VOLUME = "synthetic:96x96x96:u8:lobes"
+SERIES = ["synthetic:64x64x64:u8:lobes", "synthetic:64x64x64:u8:gyroid", "synthetic:64x64x64:u8:shells"]
 ENGINE = Path("/usr/share/doc/tachyon/examples/scenes/vol/engine.256x256x110")
 
 
@@ -167,6 +168,58 @@ def pending(link):
         page.driver.quit()
 
 
+def check_time(page, _view):
+    """The time steps of a series: the slider, a step further, and Play, which comes round to the first one."""
+    page.rests("the first step")
+
+    def step():
+        return int(page.driver.execute_script("return document.documentElement.dataset.timeStep"))
+
+    names, images = {}, {}
+    for wanted in range(len(SERIES)):
+        if wanted > 0:
+            before = page.shown()
+            page.driver.execute_script("document.getElementById('later').click()")
+            page.rests(f"step {wanted}", before)
+        assert step() == wanted
+        names[wanted], images[wanted] = page.text("name"), page.save(f"time-{wanted}")
+    assert len(set(images.values())) == len(SERIES), "two steps show the same image"
+    before = page.shown()
+    page.driver.execute_script("""
+      const slider = document.getElementById('time-step');
+      slider.value = 0;
+      slider.dispatchEvent(new Event('input'));""")
+    page.rests("the first step again", before)
+    assert page.image() == images[0]
+    assert page.text("name") == names[0]
+    page.element("play").click()
+    assert page.text("play") == "Pause"
+    seen = set()
+    page.until(lambda: seen.add(step()) or len(seen) == len(SERIES), "every step, while it plays")
+    page.until(lambda: step() == 0, "the first step after the last")
+    page.element("play").click()
+    page.rests("an image at rest after playing")
+    assert page.image() == images[step()]
+    trouble = [entry for entry in page.driver.get_log("browser") if entry["level"] == "SEVERE"]
+    assert not trouble, trouble
+
+
+def look(words, checks):
+    """`checks` on the page of `understudy view` with these words; afterwards without the secret."""
+    view = subprocess.Popen([str(PROGRAMS / "understudy"), "view", "--web", "0", *words], stdout=subprocess.PIPE, text=True)
+    try:
+        link = re.search(r"http://\S+", view.stdout.readline()).group()
+        page = Page(link)
+        try:
+            checks(page, view)
+        finally:
+            page.driver.quit()
+        pending(link)
+    finally:
+        view.terminate()
+        view.wait()
+
+
 def main():
     for program in ("chromium", "chromedriver"):
         if not shutil.which(program):
@@ -174,19 +227,8 @@ def main():
             return 77
     OUT.mkdir(parents=True, exist_ok=True)
     volume = ["--volume-size", "256", "256", "110", "--type", "u8", "--transfer-function", "engine", str(ENGINE)] if ENGINE.exists() else [VOLUME]
-    view = subprocess.Popen([str(PROGRAMS / "understudy"), "view", "--web", "0", "-n", "2", *volume], stdout=subprocess.PIPE,
-                            text=True)
-    try:
-        link = re.search(r"http://\S+", view.stdout.readline()).group()
-        page = Page(link)
-        try:
-            check(page, view)
-        finally:
-            page.driver.quit()
-        pending(link)
-    finally:
-        view.terminate()
-        view.wait()
+    look(["-n", "2", *volume], check)
+    look(["--transfer-function", "rainbow", *SERIES], check_time)
     print(f"screenshots: {OUT}")
     return 0
 

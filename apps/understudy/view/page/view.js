@@ -296,7 +296,7 @@ function goTo(time_step) {
 
 function tellTime() {
   if (!volume) return;
-  element('time-text').textContent = `step ${shown.time_step} (0 to ${volume.time_steps - 1})`;
+  element('time-text').textContent = `${shown.time_step} / ${volume.time_steps - 1}`;
   element('name').textContent = shown.name;
   document.title = `${shown.name} · Understudy`;
   document.documentElement.dataset.timeStep = shown.time_step;

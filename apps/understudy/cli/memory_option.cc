@@ -22,6 +22,8 @@ constexpr std::uint64_t resident_bytes = std::uint64_t(40) << 20;
 constexpr std::uint64_t address_bytes = std::uint64_t(1) << 30;
 /// Of an image, its copies on their way to rank 0, and what is kept for each ray.
 constexpr std::uint64_t bytes_of_pixel = 64;
+/// Tables of segments, and images to compare.
+constexpr std::uint64_t bytes_of_settings = std::uint64_t(64) << 20;
 
 /// What is left of the process's limit on addresses, which ranks inherit.
 std::uint64_t addresses_for_volume() {
@@ -51,13 +53,15 @@ void add_memory_option(CLI::App& subcommand, std::string& memory, const std::str
       ->type_name("BYTES|auto");
 }
 
-VolumeMemory memory_for_volume(const std::string& memory, int ranks, bool ranks_are_here, std::size_t pixels) {
+VolumeMemory memory_for_volume(const std::string& memory, int ranks, bool ranks_are_here, std::size_t pixels,
+                               bool tries_settings) {
   if (memory == "auto") {
     if (!ranks_are_here) return {no_limit, false};
     const std::uint64_t share = share_of_machine(ranks), addresses = addresses_for_volume();
     return {std::min(share, addresses), addresses != no_limit};
   }
-  const std::uint64_t without_volume = resident_bytes + bytes_of_pixel * pixels;
+  const std::uint64_t without_volume =
+      resident_bytes + bytes_of_pixel * pixels + (tries_settings ? bytes_of_settings : 0);
   const std::uint64_t bytes = byte_size(memory);
   if (bytes <= without_volume)
     throw std::invalid_argument(

@@ -80,7 +80,8 @@ struct Passes {
 Passes passes_of(const volume::VolumeFile& file, const FileScene& scene, const RenderArguments& arguments,
                  int ranks) {
   VolumeMemory memory = memory_for_volume(arguments.memory, ranks, ranks_are_here(arguments.nodes),
-                                          std::size_t(scene.image.width) * std::size_t(scene.image.height));
+                                          std::size_t(scene.image.width) * std::size_t(scene.image.height),
+                                          arguments.scene.samples_are_free);
   // Bounds keep 28 bytes for each 8 cells, beside the 12 that their bricks take at least.
   if (scene.image.bounds_error) memory.bytes /= 4;
   Passes passes{{}, scene.load};

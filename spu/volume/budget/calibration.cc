@@ -185,8 +185,8 @@ std::vector<Tried> tried_in_turn(compositor::ImageService& service, const Meanin
   return tried;
 }
 
-/// Where each image takes what loading takes: all settings are tried together. Their costs are as their
-/// samples, of which a segment takes two.
+/// For a service that loads parts for each image: all settings are rendered together, so that parts are loaded
+/// once. Loading hides the time of casting, so costs are numbers of samples; a segment takes two.
 std::vector<Tried> tried_at_once(compositor::ImageService& service, const Meaning& small,
                                  const volume::VolumeDescription& volume, float termination) {
   std::vector<Tried> tried;

@@ -14,7 +14,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -50,9 +49,11 @@ Result understudy(const std::string& arguments) {
   return shell(UNDERSTUDY_PROGRAM " " + arguments);
 }
 
+/// Empty where it cannot be read, as of a process that has just ended.
 std::string contents(const fs::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
 }
 
 class UnderstudyRun : public ::testing::Test {

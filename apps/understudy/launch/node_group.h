@@ -25,7 +25,7 @@
 
 namespace understudy::launcher {
 
-/// From mpirun's start to rank 0's hello, where other hosts take part.
+/// From mpirun's start to rank 0's hello.
 constexpr std::chrono::seconds patience_with_start{60};
 
 struct NodeGroupPlan {

@@ -8,6 +8,7 @@
 #include "compositor/service/node_protocol.h"
 #include "compositor/transport/wire.h"
 #include "volume/cell_lattice.h"
+#include "volume/file/series.h"
 
 namespace understudy::compositor {
 
@@ -30,6 +31,7 @@ std::vector<std::byte> encode(const LoadRequest& request) {
   out.integer(request.hints.big_endian.has_value());
   if (request.hints.big_endian) out.integer(*request.hints.big_endian);
   out.integer(request.hints.level);
+  out.integer(request.hints.time_step);
   out.integer(request.texels.type.has_value());
   if (request.texels.type) out.integer(std::int64_t(*request.texels.type));
   out.integer(request.texels.range.has_value());
@@ -53,6 +55,7 @@ LoadRequest decode_load_request(std::span<const std::byte> payload) {
   if (in.flag("hints.big_endian")) request.hints.big_endian = in.flag("hints.big_endian");
   constexpr int most_levels = 16;
   request.hints.level = in.small("hints.level", 0, most_levels);
+  request.hints.time_step = in.small("hints.time_step", 0, int(volume::max_time_steps) - 1);
   if (in.flag("texels.type")) request.texels.type = in.enumerator("texels.type", volume::TexelType::rgba8);
   if (in.flag("texels.range")) {
     request.texels.range.emplace();

@@ -44,7 +44,7 @@ class Folder {
 };
 
 /// The names are what most formats are known by. The .img of a .hdr is the same bytes.
-constexpr std::array<const char*, 10> names = {"a.nrrd",
+constexpr std::array<const char*, 11> names = {"a.nrrd",
                                                "a.nhdr",
                                                "a.nii",
                                                "a.nii.gz",
@@ -53,10 +53,16 @@ constexpr std::array<const char*, 10> names = {"a.nrrd",
                                                "a.vti.gz",
                                                "a_3x4x5_int16be.raw",
                                                "a_3x4x5_f32.raw.gz",
-                                               "a.uvol"};
+                                               "a.uvol",
+                                               "a.mha"};
 
 void read(const std::string& path, const ReadableFiles& files, bool at_end) {
   std::unique_ptr<VolumeFile> file = open_volume(path, {}, files);
+  if (at_end && file->description().time_steps > 1) {
+    FileHints hints;
+    hints.time_step = file->description().time_steps - 1;
+    file = open_volume(path, hints, files);
+  }
   const std::array<int, 3> size = file->description().size;
   TexelBox box{{0, 0, 0}, size};
   // Some thousand texels are enough.

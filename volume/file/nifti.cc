@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "volume/file/file_error.h"
+#include "volume/file/series.h"
 
 namespace understudy::volume {
 
@@ -102,7 +103,7 @@ bool is_nifti(const std::string& path) {
   return is_part(path, ".nii") || is_part(path, ".hdr") || is_part(path, ".img");
 }
 
-std::unique_ptr<VolumeFile> open_nifti(const std::string& path, const ReadableFiles& files) {
+std::unique_ptr<VolumeFile> open_nifti(const std::string& path, int time_step, const ReadableFiles& files) {
   const std::string header_path = is_part(path, ".img") ? with_part(path, ".img", ".hdr") : path;
   std::unique_ptr<ByteSource> file = open_file_or_gzip(header_path, files);
   const NiftiHeader header(*file);
@@ -133,7 +134,7 @@ std::unique_ptr<VolumeFile> open_nifti(const std::string& path, const ReadableFi
   std::array<std::int64_t, 3> size{1, 1, 1};
   for (std::size_t axis = 0; axis < 3 && std::int64_t(axis) < dim[0]; ++axis) size[axis] = dim[axis + 1];
   description.type = type_of(code, path);
-  checked_bytes(size, description.type, path);
+  const std::uint64_t bytes = checked_bytes(size, description.type, path);
   for (std::size_t axis = 0; axis < 3; ++axis) description.size[axis] = int(size[axis]);
   if (slope != 0 && std::isfinite(slope) && std::isfinite(intercept)) {
     description.scale = slope;
@@ -141,6 +142,14 @@ std::unique_ptr<VolumeFile> open_nifti(const std::string& path, const ReadableFi
   }
   if (!(data_offset >= 0 && data_offset <= largest_offset))
     fail_nifti(path, fmt::format("its data would begin at byte {}; get the file again", data_offset));
+
+  // Some writers leave the lengths of axes that are not there at 0.
+  const std::int64_t steps = dim[0] < 4 ? 1 : std::max<std::int64_t>(dim[4], 1);
+  if (steps > std::int64_t(max_time_steps))
+    fail_nifti(path, fmt::format("its header speaks of {} time steps (at most {}); get the file again", steps,
+                                 max_time_steps));
+  description.time_steps = int(steps);
+  check_time_step(time_step, description.time_steps, path);
 
   DenseScalars scalars;
   scalars.offset = std::uint64_t(data_offset);
@@ -155,6 +164,7 @@ std::unique_ptr<VolumeFile> open_nifti(const std::string& path, const ReadableFi
     scalars.bytes = open_file_or_gzip(
         is_part(header_path, ".hdr") ? with_part(header_path, ".hdr", ".img") : header_path, files);
   }
+  scalars.offset += std::uint64_t(time_step) * bytes;
   return dense_volume(description, std::move(scalars));
 }
 

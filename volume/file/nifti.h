@@ -12,7 +12,9 @@ namespace understudy::volume {
 /// By the name.
 bool is_nifti(const std::string& path);
 
-/// The first volume of a series. Throws FileError.
-std::unique_ptr<VolumeFile> open_nifti(const std::string& path, const ReadableFiles& files = {});
+/// The volume at `time_step` along the fourth axis, and at the first place along each axis behind it. Throws
+/// FileError.
+std::unique_ptr<VolumeFile> open_nifti(const std::string& path, int time_step = 0,
+                                       const ReadableFiles& files = {});
 
 }  // namespace understudy::volume

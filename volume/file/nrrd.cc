@@ -5,40 +5,29 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <sstream>
 #include <string_view>
 #include <vector>
 
 #include "volume/file/file_error.h"
 #include "volume/file/gzip_source.h"
+#include "volume/file/header_fields.h"
+#include "volume/file/series.h"
 
 namespace understudy::volume {
 
 namespace {
 
 constexpr std::size_t max_header_bytes = std::size_t(1) << 20;
-constexpr int max_axes = 16;
+constexpr std::size_t max_axes = 16;
 constexpr std::uint64_t max_skip = std::uint64_t(1) << 40;
 
-struct NrrdHeader {
-  std::map<std::string, std::string> fields;
-  std::uint64_t bytes = 0;  ///< with the empty line at its end
-};
-
 [[noreturn]] void fail_nrrd(const std::string& path, const std::string& what) {
-  throw FileError(fmt::format("{}: not a readable NRRD file: {}", path, what));
-}
-
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(" \t\r") - first + 1));
+  HeaderFields("NRRD", path).fail(what);
 }
 
 std::string lower(std::string text) {
@@ -46,12 +35,17 @@ std::string lower(std::string text) {
   return text;
 }
 
+struct NrrdHeader {
+  HeaderFields fields;
+  std::uint64_t bytes = 0;  ///< with the empty line at its end
+};
+
 // Of a detached header the file's end ends it as well.
 NrrdHeader read_header(ByteSource& file) {
   std::string text(std::min<std::size_t>(max_header_bytes, std::size_t(file.size().value_or(max_header_bytes))),
                    ' ');
   text.resize(file.read(0, std::as_writable_bytes(std::span(text))));
-  NrrdHeader header;
+  NrrdHeader header{HeaderFields("NRRD", file.path())};
   bool ended = text.size() < max_header_bytes;
   std::size_t at = 0;
   for (bool first = true; at < text.size(); first = false) {
@@ -66,45 +60,16 @@ NrrdHeader read_header(ByteSource& file) {
     if (first || line[0] == '#' || colon == std::string::npos || line.compare(colon, 2, ":=") == 0) continue;
     std::string name = lower(trimmed(std::string_view(line).substr(0, colon)));
     std::erase(name, ' ');
-    if (!header.fields.emplace(name, trimmed(std::string_view(line).substr(colon + 1))).second)
-      fail_nrrd(file.path(), fmt::format("its header has the field '{}' twice; remove one", name));
+    header.fields.add(name, trimmed(std::string_view(line).substr(colon + 1)));
   }
   if (!ended)
-    fail_nrrd(file.path(),
-              fmt::format("its header does not end within {} bytes; get the file again", max_header_bytes));
+    header.fields.fail(
+        fmt::format("its header does not end within {} bytes; get the file again", max_header_bytes));
   header.bytes = at;
   return header;
 }
 
-class Fields {
- public:
-  Fields(const NrrdHeader& header, const std::string& path) : fields_(header.fields), path_(path) {}
-
-  /// Empty when there is none.
-  std::string text(const char* name) const {
-    const auto found = fields_.find(name);
-    return found == fields_.end() ? std::string() : found->second;
-  }
-  std::string required(const char* name) const {
-    std::string value = text(name);
-    if (value.empty()) fail_nrrd(path_, fmt::format("its header has no field '{}'; get the file again", name));
-    return value;
-  }
-  std::int64_t integer(const char* name, const std::string& value, std::int64_t low, std::int64_t high) const {
-    std::int64_t number = 0;
-    const auto [stop, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-    if (error != std::errc() || stop != value.data() + value.size() || number < low || number > high)
-      fail_nrrd(path_, fmt::format("its field '{}' is '{}', not a number of {} to {}; check its header", name,
-                                   value, low, high));
-    return number;
-  }
-
- private:
-  const std::map<std::string, std::string>& fields_;
-  const std::string& path_;
-};
-
-ScalarType type_of(const Fields& fields, const std::string& path) {
+ScalarType type_of(const HeaderFields& fields, const std::string& path) {
   const std::string name = lower(fields.required("type"));
   static const std::map<std::string, ScalarType> names{{"signed char", ScalarType::i8},
                                                        {"int8", ScalarType::i8},
@@ -154,17 +119,10 @@ ScalarType type_of(const Fields& fields, const std::string& path) {
   return found->second;
 }
 
-std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; int(words.size()) <= max_axes && stream >> word;) words.push_back(word);
-  return words;
-}
-
 /// "(0.5,0,0) (0,0.5,0) none" as lengths; "none" is not a number.
 std::vector<double> lengths_of(const std::string& directions) {
   std::vector<double> lengths;
-  for (std::size_t at = 0; at < directions.size() && int(lengths.size()) <= max_axes;) {
+  for (std::size_t at = 0; at < directions.size() && lengths.size() <= max_axes;) {
     if (directions.compare(at, 4, "none") == 0) {
       lengths.push_back(std::numeric_limits<double>::quiet_NaN());
       at += 4;
@@ -173,7 +131,8 @@ std::vector<double> lengths_of(const std::string& directions) {
       std::string inner = directions.substr(at + 1, end - at - 1);
       std::ranges::replace(inner, ',', ' ');
       double square = 0;
-      for (const std::string& word : words_of(inner)) square += std::pow(std::strtod(word.c_str(), nullptr), 2);
+      for (const std::string& word : words_of(inner, max_axes))
+        square += std::pow(std::strtod(word.c_str(), nullptr), 2);
       lengths.push_back(std::sqrt(square));
       at = end + 1;
     } else {
@@ -183,37 +142,80 @@ std::vector<double> lengths_of(const std::string& directions) {
   return lengths;
 }
 
-FileDescription description_of(const Fields& fields, const std::string& path) {
-  const auto axes = std::size_t(fields.integer("dimension", fields.required("dimension"), 1, max_axes));
-  const std::vector<std::string> words = words_of(fields.required("sizes"));
-  if (words.size() != axes)
-    fail_nrrd(path, fmt::format("it has {} axes but {} sizes; check its header", axes, words.size()));
+struct Axis {
+  std::int64_t extent = 1;
+  double spacing = 1;
+  bool is_time = false;   ///< its kind says so, or it has none and no direction in space
+  bool is_space = false;  ///< nothing says that it is something else
+};
+
+std::vector<Axis> axes_of(const HeaderFields& fields, const std::string& path) {
+  const auto count =
+      std::size_t(fields.integer("dimension", fields.required("dimension"), 1, std::int64_t(max_axes)));
+  const std::vector<std::string> sizes = words_of(fields.required("sizes"), max_axes);
+  if (sizes.size() != count)
+    fail_nrrd(path, fmt::format("it has {} axes but {} sizes; check its header", count, sizes.size()));
   std::vector<double> distances;
-  if (const std::string directions = fields.text("spacedirections"); !directions.empty())
+  const std::string directions = fields.text("spacedirections");
+  if (!directions.empty())
     distances = lengths_of(directions);
   else
-    for (const std::string& word : words_of(fields.text("spacings")))
+    for (const std::string& word : words_of(fields.text("spacings"), max_axes))
       distances.push_back(std::strtod(word.c_str(), nullptr));
+  const std::vector<std::string> kinds = words_of(lower(fields.text("kinds")), max_axes);
 
-  std::array<std::int64_t, 3> size{};
-  FileDescription description;
-  std::size_t spatial = 0;
-  for (std::size_t axis = 0; axis < axes; ++axis) {
-    const std::int64_t extent =
-        fields.integer("sizes", words[axis], 0, std::numeric_limits<std::int64_t>::max());
-    if (axes != 3 && extent == 1) continue;
-    if (spatial == 3)
-      fail_nrrd(path, "it has more than three axes longer than 1; cut it first, for example with `unu slice`");
-    size[spatial] = extent;
-    description.spacing[spatial++] = believable_spacing(axis < distances.size() ? distances[axis] : 1.0);
+  std::vector<Axis> axes(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    axes[k].extent = fields.integer("sizes", sizes[k], 0, std::numeric_limits<std::int64_t>::max());
+    if (k < distances.size()) axes[k].spacing = believable_spacing(distances[k]);
+    const std::string kind = k < kinds.size() ? kinds[k] : "none";
+    const bool unknown = kind == "none" || kind == "???";
+    const bool has_direction = directions.empty() || (k < distances.size() && !std::isnan(distances[k]));
+    // 3D Slicer calls the axis of its time series a list.
+    axes[k].is_time = kind == "time" || kind == "list" || (unknown && !has_direction);
+    axes[k].is_space = has_direction && (unknown || kind == "domain" || kind == "space");
   }
-  if (spatial < 3 && axes != 3) {
-    if (axes < 3) fail_nrrd(path, fmt::format("it has {} axes, a volume has 3; check its header", axes));
-    for (; spatial < 3; ++spatial) size[spatial] = 1;
+  return axes;
+}
+
+/// Takes the axis along which whole volumes follow each other off `axes`; how many do.
+std::int64_t take_time_steps(std::vector<Axis>& axes, const std::string& path) {
+  if (axes.size() < 4) return 1;
+  const auto is_long = [](const Axis& axis) { return axis.extent != 1; };
+  const bool too_many = std::ranges::count_if(axes, is_long) > 3;
+  for (std::size_t k = 0; too_many && k + 1 < axes.size(); ++k)
+    if (is_long(axes[k]) && !axes[k].is_space)
+      fail_nrrd(path,
+                fmt::format("its axis {} of {} is not one of space; move it behind the others, for example "
+                            "with `unu permute`",
+                            k + 1, axes.size()));
+  const bool unmarked = too_many && axes.back().is_space;
+  if (!axes.back().is_time && !unmarked) return 1;
+  const std::int64_t steps = axes.back().extent;
+  if (steps < 1 || steps > std::int64_t(max_time_steps))
+    fail_nrrd(path, fmt::format("it has {} time steps, not 1 to {}; check its header", steps, max_time_steps));
+  axes.pop_back();
+  return steps;
+}
+
+FileDescription description_of(const HeaderFields& fields, const std::string& path) {
+  std::vector<Axis> axes = axes_of(fields, path);
+  FileDescription description;
+  description.time_steps = int(take_time_steps(axes, path));
+  if (axes.size() < 3)
+    fail_nrrd(path, fmt::format("it has {} axes, a volume has 3; check its header", axes.size()));
+  if (axes.size() > 3) std::erase_if(axes, [](const Axis& axis) { return axis.extent == 1; });
+  if (axes.size() > 3)
+    fail_nrrd(path, "it has more than three axes longer than 1; cut it first, for example with `unu slice`");
+  axes.resize(3);
+  std::array<std::int64_t, 3> size{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    size[k] = axes[k].extent;
+    description.spacing[k] = axes[k].spacing;
   }
   description.type = type_of(fields, path);
   checked_bytes(size, description.type, path);
-  for (std::size_t axis = 0; axis < 3; ++axis) description.size[axis] = int(size[axis]);
+  for (std::size_t k = 0; k < 3; ++k) description.size[k] = int(size[k]);
   return description;
 }
 
@@ -237,11 +239,12 @@ bool is_nrrd(const std::string& path, const ReadableFiles& files) {
          std::ranges::equal(magic, wanted, {}, [](std::byte b) { return char(b); });
 }
 
-std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, const ReadableFiles& files) {
+std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, int time_step, const ReadableFiles& files) {
   std::unique_ptr<ByteSource> file = open_file(path, files);
   const NrrdHeader header = read_header(*file);
-  const Fields fields(header, path);
+  const HeaderFields& fields = header.fields;
   const FileDescription description = description_of(fields, path);
+  check_time_step(time_step, description.time_steps, path);
 
   DenseScalars scalars;
   scalars.offset = header.bytes;
@@ -267,11 +270,11 @@ std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, const ReadableFil
     if (skip >= 0) {
       scalars.offset += std::uint64_t(skip);
     } else {  // the data is what the file ends with
-      const std::uint64_t there = file->size().value_or(0);
-      if (there < bytes)
-        fail_nrrd(path, fmt::format("truncated: {} bytes of scalars were expected, {} are there; {}", bytes,
+      const std::uint64_t there = file->size().value_or(0), all = bytes * std::uint64_t(description.time_steps);
+      if (there < all)
+        fail_nrrd(path, fmt::format("truncated: {} bytes of scalars were expected, {} are there; {}", all,
                                     there, scalars.advice));
-      scalars.offset = there - bytes;
+      scalars.offset = there - all;
     }
     scalars.bytes = std::move(file);
   } else if (encoding == "gzip" || encoding == "gz") {
@@ -289,6 +292,7 @@ std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, const ReadableFil
       fail_nrrd(path, fmt::format("its field 'endian' is '{}', not little or big; check its header", endian));
     scalars.big_endian = endian == "big";
   }
+  scalars.offset += std::uint64_t(time_step) * bytes;
   return dense_volume(description, std::move(scalars));
 }
 

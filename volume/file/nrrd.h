@@ -13,7 +13,10 @@ namespace understudy::volume {
 /// By the first bytes.
 bool is_nrrd(const std::string& path, const ReadableFiles& files = {});
 
-/// A scalar volume of three axes (where there are more, axes of length 1 do not count). Throws FileError.
-std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, const ReadableFiles& files = {});
+/// A scalar volume of three axes, at `time_step` along a last axis of time (its kind is time or list, or it is
+/// the fourth and its kind is not said). Where there are more axes, those of length 1 do not count. Throws
+/// FileError.
+std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, int time_step = 0,
+                                      const ReadableFiles& files = {});
 
 }  // namespace understudy::volume

@@ -57,6 +57,11 @@ bool comes_before(const std::string& a, const std::string& b) {
   return over ? a < b : i >= a.size();
 }
 
+std::string name_of(const SeriesStep& step) {
+  const std::string file = std::filesystem::path(step.file).filename().string();
+  return step.in_file ? fmt::format("{}, {}", file, *step.in_file) : file;
+}
+
 std::vector<std::string> files_of_series(const std::vector<std::string>& names) {
   std::vector<std::string> files;
   for (const std::string& name : names) {

@@ -2,7 +2,7 @@
 // A volume in a file, of which any box can be read without the rest.
 //
 // NRRD and UVOL are known by their first bytes, NIfTI and VTI by their names (.nii .hdr .img .vti, each also
-// with .gz), and a name that begins with "synthetic:" needs no file. Everything else is raw scalars, whose size
+// with .gz), MetaImage too (.mha .mhd), and a name that begins with "synthetic:" needs no file. Everything else is raw scalars, whose size
 // and type come from the caller or from the name (engine.256x256x110, head_256x256x113_int16be.raw.gz).
 #pragma once
 
@@ -22,12 +22,13 @@
 namespace understudy::volume {
 
 /// What the user says about a file: of raw files what these do not say themselves, of hierarchical ones the
-/// level.
+/// level, of files of several time steps which one.
 struct FileHints {
   std::optional<std::array<int, 3>> size;
   std::optional<ScalarType> type;
   std::optional<bool> big_endian;
-  int level = 0;  ///< of a hierarchical volume: which of its levels is read; 0 is the finest
+  int level = 0;      ///< of a hierarchical volume: which of its levels is read; 0 is the finest
+  int time_step = 0;  ///< which of those that the file holds is read, counted from 0
 
   bool operator==(const FileHints&) const = default;
 };
@@ -45,6 +46,7 @@ struct FileDescription {
   Vec3 spacing{1, 1, 1};                ///< between scalars, in any unit
   std::optional<LevelOfDetail> detail;  ///< where this is a coarser level
   ScalarType type = ScalarType::u8;
+  int time_steps = 1;  ///< that the file holds; all else is said of each of them
   /// A scalar s of the file means the value offset + scale * s.
   double scale = 1;
   double offset = 0;
@@ -96,6 +98,9 @@ std::unique_ptr<VolumeFile> dense_volume(const FileDescription& description, Den
 /// The bytes of all scalars. Throws FileError, naming `path`, when an axis is empty or longer than a volume can
 /// be.
 std::uint64_t checked_bytes(const std::array<std::int64_t, 3>& size, ScalarType type, const std::string& path);
+
+/// Throws FileError, naming `path`, where a file of `steps` time steps has no `step`.
+void check_time_step(int step, int steps, const std::string& path);
 
 /// What may stand between two scalars: anything but a positive finite number that can be squared becomes 1.
 double believable_spacing(double spacing);

@@ -21,6 +21,7 @@ struct Arguments {
   std::string volume;
   std::string out;
   RawHints raw;
+  int time_step = 0;
   volume::HierarchyOptions options;
   std::string prediction = "cubic";
 };
@@ -46,7 +47,9 @@ class Progress {
 
 int convert(const Arguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  const auto volume = volume::open_volume(arguments.volume, file_hints(arguments.raw));
+  volume::FileHints hints = file_hints(arguments.raw);
+  hints.time_step = arguments.time_step;
+  const auto volume = volume::open_volume(arguments.volume, hints);
   volume::HierarchyOptions options = arguments.options;
   options.prediction = arguments.prediction == "cubic" ? volume::Prediction::cubic : volume::Prediction::linear;
   Progress progress;
@@ -78,7 +81,9 @@ void add_convert(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* subcommand =
       app.add_subcommand("convert", "a volume in levels of detail, compressed: a file that is read in part");
-  subcommand->add_option("VOLUME", arguments->volume, "raw, NRRD, NIfTI, VTI, UVOL or synthetic: as for render")
+  subcommand
+      ->add_option("VOLUME", arguments->volume,
+                   "raw, NRRD, NIfTI, MetaImage, VTI, UVOL or synthetic: as for render")
       ->required();
   subcommand->add_option("-o,--out", arguments->out, "the file to write")
       ->required()
@@ -97,6 +102,11 @@ void add_convert(CLI::App& app, std::function<int()>& chosen) {
   subcommand
       ->add_option("--effort", arguments->options.effort, "of the compression: more is slower and smaller")
       ->check(CLI::Range(1, 19))
+      ->capture_default_str();
+  subcommand
+      ->add_option("--time-step", arguments->time_step,
+                   "of a file that holds several: which is converted, counted from 0")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   add_raw_hints(*subcommand, arguments->raw);
   subcommand->callback([arguments, &chosen] { chosen = [arguments] { return convert(*arguments); }; });

@@ -102,6 +102,7 @@ Passes passes_of(const volume::VolumeFile& file, const FileScene& scene, const R
 RenderFigures render_with(LoadingService& service, const FileScene& scene, const RenderArguments& arguments) {
   RenderFigures figures;
   figures.file = scene.load.file;
+  figures.time_step = scene.time_step;
   figures.description = scene.file;
   figures.mapping = scene.mapping;
   figures.width = scene.image.width;

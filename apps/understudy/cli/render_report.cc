@@ -121,6 +121,7 @@ void write_render_report(const std::string& path, const RenderFigures& figures) 
   const volume::FrameCounts& counts = figures.counts;
   Json report;
   report["volume"] = {{"file", figures.file},
+                      {"time_step", figures.time_step},
                       {"size", figures.description.size},
                       {"spacing", figures.description.spacing},
                       {"level_of_detail", level_json(figures.description)},

@@ -24,6 +24,7 @@ struct BoundFigures {
 
 struct RenderFigures {
   std::string file;
+  int time_step = 0;
   volume::FileDescription description;
   volume::TexelMapping mapping;
   int width = 0;

@@ -14,7 +14,6 @@
 #include "apps/understudy/images/image.h"
 #include "spu/volume/budget/budget.h"
 #include "volume/file/file_error.h"
-#include "volume/file/series.h"
 #include "volume/file/synthetic.h"
 #include "volume/hierarchy/level_request.h"
 #include "volume/matrix.h"
@@ -61,9 +60,9 @@ void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
   subcommand
       .add_option(
           "VOLUME", arguments.volumes,
-          "raw (size and type in its name: head_256x256x113_int16be.raw.gz), NRRD, NIfTI, VTI or UVOL, or "
-          "synthetic:XxYxZ[:u8|u16|f32[:shells|lobes|gyroid]]; several, or a pattern ('step_*.vti'), are the "
-          "time steps of a series")
+          "raw (size and type in its name: head_256x256x113_int16be.raw.gz), NRRD, NIfTI, MetaImage, VTI or UVOL, or "
+          "synthetic:XxYxZ[:u8|u16|f32[:shells|lobes|gyroid]]; several, a pattern ('step_*.vti'), or a file "
+          "that holds several, are the time steps of a series")
       ->required();
   subcommand
       .add_option("--time-step", arguments.time_step,
@@ -112,19 +111,39 @@ volume::Vec3 FileScene::voxel() const {
 
 compositor::LoadRequest FileScene::load_of(int step) const {
   compositor::LoadRequest request = load;
-  request.file = series.at(std::size_t(step));
+  const volume::SeriesStep& wanted = series.at(std::size_t(step));
+  request.file = wanted.file;
+  request.hints.time_step = wanted.in_file.value_or(0);
   request.volume.id = volume_id + volume::VolumeId(step);
   return request;
 }
 
 namespace {
 
-/// What the first file is, with the values of all of them; they have one size, type and spacing.
-volume::FileDescription described_series(const std::vector<std::string>& files, const volume::FileHints& hints,
-                                         bool spacing_is_given) {
-  volume::FileDescription first;
+struct Series {
+  std::vector<volume::SeriesStep> steps;
+  volume::FileDescription description;  ///< of any step, with the values of all of them
+};
+
+void append_steps(std::vector<volume::SeriesStep>& steps, const std::string& file, int in_file) {
+  if (in_file == 1) {
+    steps.push_back({file, std::nullopt});
+    return;
+  }
+  for (int step = 0; step < in_file; ++step) steps.push_back({file, step});
+}
+
+/// Of files that have one size, type and spacing.
+Series described_series(const std::vector<std::string>& files, const volume::FileHints& hints,
+                        bool spacing_is_given) {
+  Series series;
+  volume::FileDescription& first = series.description;
   for (const std::string& file : files) {
     const volume::FileDescription one = volume::open_volume(file, hints)->description();
+    append_steps(series.steps, file, one.time_steps);
+    if (series.steps.size() > volume::max_time_steps)
+      throw volume::FileError(fmt::format("{}: with it the series has {} time steps (at most {})", file,
+                                          series.steps.size(), volume::max_time_steps));
     if (&file == &files.front()) {
       first = one;
       continue;
@@ -153,7 +172,7 @@ volume::FileDescription described_series(const std::vector<std::string>& files, 
     else
       first.values.reset();
   }
-  return first;
+  return series;
 }
 
 }  // namespace
@@ -162,16 +181,18 @@ FileScene scene_of(const SceneArguments& arguments) {
   std::vector<std::string> files = volume::files_of_series(arguments.volumes);
   for (std::string& file : files)
     if (!volume::is_synthetic(file)) file = std::filesystem::absolute(file).string();
-  if (std::size_t(arguments.time_step) >= files.size())
-    throw std::invalid_argument(fmt::format("there is no time step {}; there are {}, counted from 0",
-                                            arguments.time_step, files.size()));
   volume::FileHints hints = file_hints(arguments.raw);
   hints.level = arguments.level;
-  FileScene scene = scene_of(arguments, described_series(files, hints, !arguments.spacing.empty()));
-  scene.load.file = files[std::size_t(arguments.time_step)];
+  Series series = described_series(files, hints, !arguments.spacing.empty());
+  if (std::size_t(arguments.time_step) >= series.steps.size())
+    throw std::invalid_argument(fmt::format("there is no time step {}; there are {}, counted from 0",
+                                            arguments.time_step, series.steps.size()));
+  FileScene scene = scene_of(arguments, series.description);
   scene.load.hints = hints;
-  scene.series = std::move(files);
+  scene.series = std::move(series.steps);
   scene.time_step = arguments.time_step;
+  scene.load = scene.load_of(scene.time_step);
+  scene.load.volume.id = volume_id;
   return scene;
 }
 

@@ -10,6 +10,7 @@
 #include "apps/understudy/file_scene/raw_hints.h"
 #include "apps/understudy/file_scene/shading_options.h"
 #include "compositor/service/loading_service.h"
+#include "volume/file/series.h"
 #include "volume/file/texel_stream.h"
 #include "volume/file/volume_file.h"
 #include "volume/orbit_camera.h"
@@ -19,8 +20,8 @@
 namespace understudy::launcher {
 
 struct SceneArguments {
-  std::vector<std::string> volumes;  ///< several: time steps
-  int time_step = 0;                 ///< of them, counted from 0
+  std::vector<std::string> volumes;  ///< of one time step each, or of several
+  int time_step = 0;                 ///< of all of them, counted from 0
   ShadingArguments shading;
   std::string transfer_function = "grey";
   std::string camera = "30,20,4";
@@ -51,9 +52,9 @@ struct ImageSettings {
 };
 
 struct FileScene {
-  compositor::LoadRequest load;     ///< of the time step that is shown first
-  std::vector<std::string> series;  ///< the files of all time steps
-  int time_step = 0;                ///< whose file `load` names
+  compositor::LoadRequest load;            ///< of the time step that is shown first
+  std::vector<volume::SeriesStep> series;  ///< all time steps
+  int time_step = 0;                       ///< that of `load`
   volume::FileDescription file;
   volume::TexelMapping mapping;
   ImageSettings image;

@@ -122,8 +122,7 @@ std::string refusal_message(std::uint64_t sequence, std::string_view reason) {
 
 std::vector<std::byte> image_message(const FileScene& scene, const ViewState& state,
                                      const ShownVolume::Drawn& drawn) {
-  const std::string name =
-      std::filesystem::path(scene.series[std::size_t(state.time_step())]).filename().string();
+  const std::string name = volume::name_of(scene.series[std::size_t(state.time_step())]);
   const Clock::time_point start = Clock::now();
   const std::vector<std::byte> image =
       state.lossless() ? png_of(drawn.image) : jpeg_of(drawn.image, moving_quality);

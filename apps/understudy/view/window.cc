@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -170,10 +169,7 @@ class Window {
     return ((step + steps) % count + count) % count;
   }
 
-  std::string name() const {
-    const auto& series = volume_.scene().series;
-    return std::filesystem::path(series[std::size_t(state_.time_step())]).filename().string();
-  }
+  std::string name() const { return volume::name_of(volume_.scene().series[std::size_t(state_.time_step())]); }
 
   ShownVolume::Drawn draw() {
     const Clock::time_point start = Clock::now();

@@ -14,6 +14,38 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+TEST_F(Render, ATimeStepOfAFileThatHoldsSeveral) {
+  std::vector<std::byte> all;
+  for (unsigned step = 0; step < 3; ++step) {
+    std::vector<std::byte> values;
+    for (unsigned i = 0; i < 20 * 18 * 16; ++i) values.push_back(std::byte(i * (step + 3) / 7));
+    folder_.write("step" + std::to_string(step) + "_20x18x16.raw", std::as_bytes(std::span(values)));
+    all.insert(all.end(), values.begin(), values.end());
+  }
+  const std::string header = "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 20 18 16 3\nencoding: raw\n\n";
+  const auto* const text = reinterpret_cast<const std::byte*>(header.data());
+  all.insert(all.begin(), text, text + header.size());
+  const std::string series = folder_.write("series.nrrd", std::span<const std::byte>(all));
+  for (const char* step : {"0", "2"}) {
+    const RgbaImage expected = image(folder_.file("step") + step + "_20x18x16.raw --size 40x40");
+    const std::string of_series =
+        series + " --size 40x40 --time-step " + step + " --report " + folder_.file("r.json");
+    EXPECT_EQ(difference(image(of_series), expected).rms, 0);
+    EXPECT_EQ(report()["volume"]["time_step"], std::stoi(step));
+#ifdef UNDERSTUDY_HAS_NODES
+    EXPECT_LT(difference(image(of_series + " -n 2"), expected).rms, 1e-6);
+#endif
+  }
+  EXPECT_THAT(render(series + " --time-step 3").output, HasSubstr("there is no time step 3; there are 3"));
+  const Result converted = shell(std::string(UNDERSTUDY_PROGRAM) + " convert --time-step 2 " + series + " -o " +
+                                 folder_.file("s.uvol"));
+  ASSERT_EQ(converted.status, 0) << converted.output;
+  EXPECT_EQ(difference(image(folder_.file("s.uvol") + " --size 40x40"),
+                       image(folder_.file("step2_20x18x16.raw") + " --size 40x40"))
+                .rms,
+            0);
+}
+
 TEST_F(Render, AnImageAndAReportOfAFile) {
   const std::string file = ball(40);
   const Result result = render(file + " --transfer-function vessels --size 120x90 --frames 3 --report " +

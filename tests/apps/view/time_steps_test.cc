@@ -110,7 +110,7 @@ TEST(TimeSteps, NothingInUseIsForgottenToReadAhead) {
 
 TEST(TimeSteps, AFileThatCannotBeReadSpoilsNoOther) {
   FileScene scene = some_series();
-  scene.series[1] = "/no/such/file.raw";
+  scene.series[1].file = "/no/such/file.raw";
   const std::uint64_t one = bytes_of_one(scene);
   for (const VolumeMemory& memory : {unlimited, VolumeMemory{one * 3 / 2, false}}) {
     const auto service = compositor::embedded_loading_service();

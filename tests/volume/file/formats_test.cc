@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every format: what was written comes back, whole and in parts, and a part costs no more than it must.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nifti1_io.h>
@@ -18,6 +19,9 @@
 
 namespace understudy::volume::testing {
 namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 constexpr std::array<int, 3> size{13, 7, 9};
 constexpr std::array<ScalarType, 10> all_types{
@@ -152,6 +156,158 @@ TEST(NrrdFile, ForeignByteOrderSkipsAndDirections) {
   folder.write("packed", joined(text_bytes("one line\n"), gzipped(joined(text_bytes("123"), big))));
   expect_holds(folder.write("d.nhdr", common + "encoding: gzip\nline skip: 1\nbyte skip: 3\ndata file: packed"),
                scalars, ScalarType::i16);
+}
+
+/// The scalars of three time steps, one behind the other.
+struct Steps {
+  std::array<Bytes, 3> each{random_scalars(size, ScalarType::i16, 23),
+                            random_scalars(size, ScalarType::i16, 29),
+                            random_scalars(size, ScalarType::i16, 31)};
+  Bytes all = joined(joined(each[0], each[1]), each[2]);
+};
+
+void expect_holds_steps(const std::string& name, const Steps& steps) {
+  for (int step = 0; step < 3; ++step) {
+    FileHints hints;
+    hints.time_step = step;
+    expect_holds(name, steps.each[std::size_t(step)], ScalarType::i16, hints);
+    EXPECT_EQ(open_volume(name, hints)->description().time_steps, 3);
+    EXPECT_EQ(open_volume(name, hints)->description().spacing, (Vec3{0.5, 1.5, 2.5}));
+  }
+  FileHints beyond;
+  beyond.time_step = 3;
+  EXPECT_THAT([&] { open_volume(name, beyond); },
+              ThrowsMessage<FileError>(HasSubstr("there is no time step 3 in it; it holds 3, counted from 0")));
+}
+
+TEST(NrrdFile, TimeStepsOfALastAxis) {
+  const TemporaryFolder folder;
+  Steps steps;
+  Nrrd* nrrd = nrrdNew();
+  nrrdWrap_va(nrrd, steps.all.data(), nrrdTypeShort, 4, std::size_t(size[0]), std::size_t(size[1]),
+              std::size_t(size[2]), std::size_t(3));
+  nrrdAxisInfoSet_va(nrrd, nrrdAxisInfoSpacing, 0.5, 1.5, 2.5, 0.1);
+  for (const char* encoding : {"raw", "gzip"})
+    for (const int kind : {int(nrrdKindUnknown), int(nrrdKindTime), int(nrrdKindList)}) {
+      nrrd->axis[3].kind = kind;
+      NrrdIoState* state = nrrdIoStateNew();
+      state->encoding = nrrdEncodingArray[airEnumVal(nrrdEncodingType, encoding)];
+      const std::string name = folder.file(encoding + std::to_string(kind) + ".nrrd");
+      ASSERT_EQ(nrrdSave(name.c_str(), nrrd, state), 0);
+      nrrdIoStateNix(state);
+      expect_holds_steps(name, steps);
+    }
+  nrrdNix(nrrd);
+}
+
+TEST(NrrdFile, WhatIsTimeIsSaidByKindsAndDirections) {
+  const TemporaryFolder folder;
+  const Steps steps;
+  const auto with = [&](const std::string& fields) {
+    return folder.write(
+        "t.nrrd", joined(text_bytes("NRRD0004\ntype: short\nendian: little\nencoding: raw\n" + fields + "\n\n"),
+                         steps.all));
+  };
+  const auto described = [&](const std::string& fields) { return open_volume(with(fields))->description(); };
+  const std::string directions = "space directions: (0.5,0,0) (0,1.5,0) (0,0,2.5) none\n";
+  expect_holds_steps(with(directions + "dimension: 4\nsizes: 13 7 9 3"), steps);
+  // Slices over time.
+  const FileDescription slices = described("dimension: 4\nsizes: 13 7 1 27\nkinds: domain domain domain time");
+  EXPECT_EQ(slices.size, (std::array{13, 7, 1}));
+  EXPECT_EQ(slices.time_steps, 27);
+  // Nothing says that a long axis is time while a short one does not count.
+  EXPECT_EQ(described("dimension: 4\nsizes: 13 7 1 27").size, (std::array{13, 7, 27}));
+  EXPECT_EQ(described("dimension: 3\nsizes: 13 7 27\nkinds: domain domain time").time_steps, 1);
+  EXPECT_EQ(described("dimension: 4\nsizes: 1 13 7 27\nkinds: list domain domain domain").time_steps, 1);
+  const auto trouble = [&](const std::string& fields) -> std::string {
+    try {
+      described(fields);
+    } catch (const FileError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(trouble("dimension: 4\nsizes: 3 13 7 9\nkinds: list domain domain domain"),
+              HasSubstr("its axis 1 of 4 is not one of space; move it behind the others"));
+  EXPECT_THAT(trouble("dimension: 4\nsizes: 13 7 9 3\nkinds: domain domain domain 3-vector"),
+              HasSubstr("more than three axes longer than 1"));
+  EXPECT_THAT(trouble("dimension: 5\nsizes: 13 7 3 3 3"), HasSubstr("more than three axes longer than 1"));
+  EXPECT_THAT(trouble("dimension: 4\nsizes: 13 7 9 100001"), HasSubstr("100001 time steps, not 1 to 100000"));
+}
+
+TEST(MetaImageFile, EveryTypeInOneFileAndInTwo) {
+  const TemporaryFolder folder;
+  for (const auto& [name, type] : {std::pair{"MET_UCHAR", ScalarType::u8},
+                                   {"MET_CHAR", ScalarType::i8},
+                                   {"MET_USHORT", ScalarType::u16},
+                                   {"MET_SHORT", ScalarType::i16},
+                                   {"MET_UINT", ScalarType::u32},
+                                   {"MET_INT", ScalarType::i32},
+                                   {"MET_ULONG", ScalarType::u32},
+                                   {"MET_LONG", ScalarType::i32},
+                                   {"MET_ULONG_LONG", ScalarType::u64},
+                                   {"MET_LONG_LONG", ScalarType::i64},
+                                   {"MET_FLOAT", ScalarType::f32},
+                                   {"MET_DOUBLE", ScalarType::f64}}) {
+    const Bytes scalars = random_scalars(size, type, 37);
+    const auto header = [name = name](const std::string& more, const std::string& data) {
+      return fmt::format(
+          "ObjectType = Image\nNDims = 3\nBinaryData = True\n{}DimSize = 13 7 9\nElementSpacing = 0.5 1.5 2.5\n"
+          "ElementType = {}\nElementDataFile = {}",
+          more, name, data);
+    };
+    const std::string local = folder.write("a.mha", joined(text_bytes(header("", "LOCAL\n")), scalars));
+    expect_holds(local, scalars, type);
+    EXPECT_EQ(open_volume(local)->description().spacing, (Vec3{0.5, 1.5, 2.5}));
+    folder.write("data.raw", joined(text_bytes("head"), swapped(scalars, bytes_per_scalar(type))));
+    for (const char* skip :
+         {"BinaryDataByteOrderMSB = True\nHeaderSize = 4\n", "ElementByteOrderMSB = True\nHeaderSize = -1\n"})
+      expect_holds(folder.write("b.mhd", header(skip, "data.raw\r\n")), scalars, type);
+    folder.write("data.zraw", gzipped(scalars));
+    expect_holds(folder.write("c.mhd", header("CompressedData = True\n", "data.zraw\n")), scalars, type);
+  }
+}
+
+TEST(MetaImageFile, TimeStepsOfTheFourthAxis) {
+  const TemporaryFolder folder;
+  const Steps steps;
+  const std::string header =
+      "ObjectType = Image\nNDims = 4\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = "
+      "False\n"
+      "ElementSpacing = 0.5 1.5 2.5 1\nDimSize = 13 7 9 3\nElementType = MET_SHORT\nElementDataFile = LOCAL\n";
+  expect_holds_steps(folder.write("a.mha", joined(text_bytes(header), steps.all)), steps);
+}
+
+TEST(MetaImageFile, WhatElementsMean) {
+  const TemporaryFolder folder;
+  const std::string header =
+      "NDims = 2\nElementToIntensityFunctionSlope = 0.5\nElementToIntensityFunctionOffset = -1000\n"
+      "DimSize = 13 7\nElementSize = 2 3\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
+  const FileDescription about =
+      open_volume(folder.write("a.mha", header + std::string(13 * 7, 'x')))->description();
+  EXPECT_EQ(about.size, (std::array{13, 7, 1}));
+  EXPECT_EQ(about.spacing, (Vec3{2, 3, 1}));
+  EXPECT_EQ(about.scale, 0.5);
+  EXPECT_EQ(about.offset, -1000);
+}
+
+TEST(NiftiFile, TimeStepsOfTheFourthAxis) {
+  const TemporaryFolder folder;
+  const Steps steps;
+  const std::array<int, 8> dim{4, size[0], size[1], size[2], 3, 1, 1, 1};
+  for (const char* extension : {".nii", ".nii.gz", ".hdr", ".hdr.gz"}) {
+    nifti_image* image = nifti_make_new_nim(dim.data(), DT_INT16, 1);
+    ASSERT_NE(image, nullptr);
+    image->pixdim[1] = image->dx = 0.5F;
+    image->pixdim[2] = image->dy = 1.5F;
+    image->pixdim[3] = image->dz = 2.5F;
+    std::memcpy(image->data, steps.all.data(), steps.all.size());
+    const std::string name = folder.file(std::string("a") + extension);
+    ASSERT_EQ(nifti_set_filenames(image, name.c_str(), 0, 1), 0);
+    nifti_image_write(image);
+    nifti_image_free(image);
+    expect_holds_steps(name, steps);
+  }
 }
 
 TEST(NiftiFile, WhatNiftiioWritesInOneFileAndInTwo) {

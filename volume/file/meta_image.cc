@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volume/file/meta_image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "volume/file/file_error.h"
+#include "volume/file/gzip_source.h"
+#include "volume/file/header_fields.h"
+#include "volume/file/series.h"
+
+namespace understudy::volume {
+
+namespace {
+
+constexpr std::size_t most_header_bytes = std::size_t(1) << 16;
+constexpr std::int64_t most_skipped = std::int64_t(1) << 40;
+constexpr std::size_t most_axes = 4;
+
+struct MetaImageHeader {
+  HeaderFields fields;
+  std::uint64_t bytes = 0;  ///< with the last line's end
+
+  bool flag(const char* name) const {
+    const std::string value = fields.text(name);
+    return !value.empty() && (value[0] == 'T' || value[0] == 't' || value[0] == '1');
+  }
+  std::vector<std::string> words(const char* name) const { return words_of(fields.text(name), most_axes); }
+};
+
+/// Lines "name = value". The last one names the data, which may begin behind it.
+MetaImageHeader header_of(ByteSource& file) {
+  MetaImageHeader header{HeaderFields("MetaImage", file.path())};
+  std::string text(most_header_bytes, ' ');
+  text.resize(file.read(0, std::as_writable_bytes(std::span(text))));
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line = std::string_view(text).substr(at, end - at);
+    at = std::min(end + 1, text.size());
+    const std::size_t equals = line.find('=');
+    if (equals == std::string_view::npos) continue;
+    const std::string name = trimmed(line.substr(0, equals));
+    header.fields.add(name, trimmed(line.substr(equals + 1)));
+    if (name != "ElementDataFile") continue;
+    header.bytes = at;
+    return header;
+  }
+  header.fields.fail("its header has no field 'ElementDataFile'; get the file again");
+}
+
+/// None where there is no such field or it is no finite number.
+std::optional<double> real_number(const std::string& text) {
+  double number = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || stop != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+/// MetaIO's long has 32 bits on every machine.
+ScalarType type_of(const MetaImageHeader& header) {
+  static const std::map<std::string, ScalarType> names{
+      {"MET_CHAR", ScalarType::i8},        {"MET_UCHAR", ScalarType::u8},  {"MET_SHORT", ScalarType::i16},
+      {"MET_USHORT", ScalarType::u16},     {"MET_INT", ScalarType::i32},   {"MET_UINT", ScalarType::u32},
+      {"MET_LONG", ScalarType::i32},       {"MET_ULONG", ScalarType::u32}, {"MET_LONG_LONG", ScalarType::i64},
+      {"MET_ULONG_LONG", ScalarType::u64}, {"MET_FLOAT", ScalarType::f32}, {"MET_DOUBLE", ScalarType::f64}};
+  const std::string channels = header.fields.text("ElementNumberOfChannels");
+  const auto found = names.find(header.fields.text("ElementType"));
+  if (found == names.end() || (!channels.empty() && channels != "1"))
+    header.fields.fail(
+        fmt::format("elements of type '{}' and {} channels are no scalars that can be drawn; "
+                    "extract one component first",
+                    header.fields.text("ElementType"), channels.empty() ? "1" : channels));
+  return found->second;
+}
+
+FileDescription description_of(const MetaImageHeader& header, const std::string& path) {
+  const std::vector<std::string> lengths = header.words("DimSize");
+  const auto axes =
+      std::size_t(header.fields.integer("NDims", header.fields.required("NDims"), 2, std::int64_t(most_axes)));
+  if (lengths.size() != axes)
+    header.fields.fail(fmt::format("it has {} axes but {} sizes; check its header", axes, lengths.size()));
+  // ElementSize is that of what a detector sees, and stands for the spacing where that is not said.
+  std::vector<std::string> spacing = header.words("ElementSpacing");
+  if (spacing.empty()) spacing = header.words("ElementSize");
+  std::array<std::int64_t, most_axes> size{1, 1, 1, 1};
+  FileDescription description;
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    size[axis] = header.fields.integer("DimSize", lengths[axis], 0, std::numeric_limits<std::int64_t>::max());
+    if (axis < 3 && axis < spacing.size())
+      description.spacing[axis] = believable_spacing(std::strtod(spacing[axis].c_str(), nullptr));
+  }
+  description.type = type_of(header);
+  checked_bytes({size[0], size[1], size[2]}, description.type, path);
+  for (std::size_t axis = 0; axis < 3; ++axis) description.size[axis] = int(size[axis]);
+  if (size[3] < 1 || size[3] > std::int64_t(max_time_steps))
+    header.fields.fail(
+        fmt::format("it has {} time steps, not 1 to {}; check its header", size[3], max_time_steps));
+  description.time_steps = int(size[3]);
+  const double slope = real_number(header.fields.text("ElementToIntensityFunctionSlope")).value_or(1);
+  if (slope != 0) {
+    description.scale = slope;
+    description.offset = real_number(header.fields.text("ElementToIntensityFunctionOffset")).value_or(0);
+  }
+  return description;
+}
+
+/// Where the scalars of all time steps begin: in the file itself, or in another one beside it.
+DenseScalars scalars_of(const MetaImageHeader& header, std::unique_ptr<ByteSource> file,
+                        std::uint64_t all_bytes, const ReadableFiles& files) {
+  const std::string path = file->path();
+  DenseScalars scalars;
+  scalars.advice = "its header and its data do not belong together: get the file again";
+  scalars.big_endian = header.flag("BinaryDataByteOrderMSB") || header.flag("ElementByteOrderMSB");
+  const std::string data = header.fields.text("ElementDataFile");
+  if (data == "LOCAL") {
+    scalars.offset = header.bytes;
+  } else {
+    if (data.empty() || data.starts_with("LIST") || data.find('%') != std::string::npos)
+      header.fields.fail("its data lies in several files; join them first");
+    file = open_file(std::filesystem::path(path).parent_path() / data, files);
+  }
+  const std::string skip_text = header.fields.text("HeaderSize");
+  const std::int64_t skip =
+      skip_text.empty() ? 0 : header.fields.integer("HeaderSize", skip_text, -1, most_skipped);
+  if (header.flag("CompressedData")) {
+    if (skip < 0) header.fields.fail("a HeaderSize of -1 means nothing of compressed data; check its header");
+    scalars.bytes = std::make_unique<GzipSource>(std::move(file), scalars.offset + std::uint64_t(skip));
+    scalars.offset = 0;
+    return scalars;
+  }
+  if (skip < 0) {  // the data is what the file ends with
+    const std::uint64_t there = file->size().value_or(0);
+    if (there < all_bytes)
+      header.fields.fail(fmt::format("truncated: {} bytes of scalars were expected, {} are there; {}",
+                                     all_bytes, there, scalars.advice));
+    scalars.offset = there - all_bytes;
+  } else {
+    scalars.offset += std::uint64_t(skip);
+  }
+  scalars.bytes = std::move(file);
+  return scalars;
+}
+
+}  // namespace
+
+bool is_meta_image(const std::string& path) {
+  return has_extension(path, ".mha") || has_extension(path, ".mhd");
+}
+
+std::unique_ptr<VolumeFile> open_meta_image(const std::string& path, int time_step,
+                                            const ReadableFiles& files) {
+  std::unique_ptr<ByteSource> file = open_file(path, files);
+  const MetaImageHeader header = header_of(*file);
+  if (const std::string object = header.fields.text("ObjectType"); !object.empty() && object != "Image")
+    header.fields.fail(fmt::format("it holds a '{}', not an image; give another file", object));
+  if (!header.fields.text("BinaryData").empty() && !header.flag("BinaryData"))
+    header.fields.fail("its data is text; save it as binary data");
+  const FileDescription description = description_of(header, path);
+  check_time_step(time_step, description.time_steps, path);
+  const std::uint64_t bytes =
+      checked_bytes({description.size[0], description.size[1], description.size[2]}, description.type, path);
+  DenseScalars scalars =
+      scalars_of(header, std::move(file), bytes * std::uint64_t(description.time_steps), files);
+  scalars.offset += std::uint64_t(time_step) * bytes;
+  return dense_volume(description, std::move(scalars));
+}
+
+}  // namespace understudy::volume

@@ -24,7 +24,6 @@ namespace fs = std::filesystem;
 using namespace understudy::compositor;
 using namespace understudy;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr std::size_t bytes = 27;
 
@@ -41,6 +40,13 @@ class Files : public clients::CommandTest {
     write_header("data/absolute.nrrd", file("secret_3x3x3.raw"));
     write_header("data/relative.nrrd", "../secret_3x3x3.raw");
     write_header("data/honest.nrrd", "good_3x3x3.raw");
+    write_meta_image("data/absolute.mhd", file("secret_3x3x3.raw"));
+    write_meta_image("data/relative.mhd", "../secret_3x3x3.raw");
+    write_meta_image("data/honest.mhd", "good_3x3x3.raw");
+  }
+  void write_meta_image(const std::string& name, const std::string& data) {
+    std::ofstream(file(name)) << "NDims = 3\nDimSize = 3 3 3\nElementType = MET_UCHAR\nElementDataFile = "
+                              << data << "\n";
   }
   void write_header(const std::string& name, const std::string& data) {
     std::ofstream(file(name)) << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 3 3\nencoding: raw\ndata file: "
@@ -50,11 +56,13 @@ class Files : public clients::CommandTest {
     return {file("secret_3x3x3.raw"),    file("data/../secret_3x3x3.raw"),
             file("data/link_3x3x3.raw"), file("data/up/secret_3x3x3.raw"),
             file("data/absolute.nrrd"),  file("data/relative.nrrd"),
+            file("data/absolute.mhd"),   file("data/relative.mhd"),
             file("nothing_3x3x3.raw"),   "/proc/self/environ"};
   }
   std::vector<std::string> allowed() const {
-    return {file("data/good_3x3x3.raw"), file("data/below/../good_3x3x3.raw"),
-            file("data/below/good_3x3x3.raw"), file("data/inside_3x3x3.raw"), file("data/honest.nrrd")};
+    return {file("data/good_3x3x3.raw"),       file("data/below/../good_3x3x3.raw"),
+            file("data/below/good_3x3x3.raw"), file("data/inside_3x3x3.raw"),
+            file("data/honest.nrrd"),          file("data/honest.mhd")};
   }
 };
 

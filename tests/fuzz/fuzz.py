@@ -46,7 +46,7 @@ TARGETS = [
                             "compositor/service/load_protocol.cc", "compositor/service/integral_parts.cc"), 80),
     Target("gl_server", ("spu/remote/gl_server_protocol.cc", "spu/remote/travelling_image.cc", "spu/remote/chunks.cc"), 50),
     Target("view_message", ("apps/understudy/view/view_message.cc",), 90, "view_corpus"),
-    Target("volume_file", ("volume/file/nrrd.cc", "volume/file/nifti.cc", "volume/file/vti.cc", "volume/file/vti_header.cc",
+    Target("volume_file", ("volume/file/nrrd.cc", "volume/file/meta_image.cc", "volume/file/header_fields.cc", "volume/file/nifti.cc", "volume/file/vti.cc", "volume/file/vti_header.cc",
                            "volume/file/volume_file.cc", "volume/file/zlib_blocks.cc", "volume/file/base64_source.cc",
                            "volume/file/gzip_source.cc"), 80),
     # Most of its time goes into the GLSL front end.

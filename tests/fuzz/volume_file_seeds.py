@@ -52,6 +52,7 @@ def seeds():
         "nrrd": (NRRD, nrrd("raw", SCALARS)),
         "nrrd_gzip": (NRRD, nrrd("gzip", gzip.compress(SCALARS))),
         "nrrd_skip": (NRRD, nrrd("raw", b"a\nb\n" + SCALARS, "line skip: 1\nbyte skip: -1\n")),
+        "nrrd_steps_together": (NRRD, nrrd("raw", SCALARS * 2, axes="dimension: 4\nsizes: 2 3 4 5\nkinds: list domain domain domain")),
         "nrrd_steps": (NRRD, nrrd("raw", SCALARS * 2, axes="dimension: 4\nsizes: 3 4 5 2\nkinds: domain domain domain time")),
         "nhdr": (NHDR, nrrd("raw", b"", "data file: a.nhdr\nbyte skip: -1\n")),
         "nifti": (NIFTI, nifti()),

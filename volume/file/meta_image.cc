@@ -5,49 +5,62 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "volume/file/file_error.h"
 #include "volume/file/gzip_source.h"
 #include "volume/file/header_fields.h"
-#include "volume/file/series.h"
 
 namespace understudy::volume {
 
 namespace {
 
-constexpr std::size_t most_header_bytes = std::size_t(1) << 16;
+// Sequences of ultrasound (PLUS) have some lines for each of their frames.
+constexpr std::size_t most_header_bytes = std::size_t(1) << 22;
+constexpr std::size_t header_part_bytes = std::size_t(1) << 16;
 constexpr std::int64_t most_skipped = std::int64_t(1) << 40;
 constexpr std::size_t most_axes = 4;
+
+bool is_true(const std::string& flag) {
+  return !flag.empty() && (flag[0] == 'T' || flag[0] == 't' || flag[0] == '1');
+}
 
 struct MetaImageHeader {
   HeaderFields fields;
   std::uint64_t bytes = 0;  ///< with the last line's end
 
-  bool flag(const char* name) const {
-    const std::string value = fields.text(name);
-    return !value.empty() && (value[0] == 'T' || value[0] == 't' || value[0] == '1');
-  }
   std::vector<std::string> words(const char* name) const { return words_of(fields.text(name), most_axes); }
+
+  bool big_endian() const {
+    const std::string binary = fields.text("BinaryDataByteOrderMSB");
+    return is_true(binary.empty() ? fields.text("ElementByteOrderMSB") : binary);
+  }
 };
 
 /// Lines "name = value". The last one names the data, which may begin behind it.
 MetaImageHeader header_of(ByteSource& file) {
   MetaImageHeader header{HeaderFields("MetaImage", file.path())};
-  std::string text(most_header_bytes, ' ');
-  text.resize(file.read(0, std::as_writable_bytes(std::span(text))));
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string_view line = std::string_view(text).substr(at, end - at);
-    at = std::min(end + 1, text.size());
+  std::string text;
+  std::size_t at = 0;
+  for (bool more = true; more || at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    if (end == std::string::npos && more) {
+      if (text.size() >= most_header_bytes)
+        header.fields.fail(
+            fmt::format("its header does not end within {} bytes; get the file again", most_header_bytes));
+      std::array<char, header_part_bytes> part{};
+      const std::size_t got = file.read(text.size(), std::as_writable_bytes(std::span(part)));
+      text.append(part.data(), got);
+      more = got == part.size();
+      continue;
+    }
+    const std::string_view line = std::string_view(text).substr(at, std::min(end, text.size()) - at);
+    at = end == std::string::npos ? text.size() : end + 1;
     const std::size_t equals = line.find('=');
     if (equals == std::string_view::npos) continue;
     const std::string name = trimmed(line.substr(0, equals));
@@ -57,14 +70,6 @@ MetaImageHeader header_of(ByteSource& file) {
     return header;
   }
   header.fields.fail("its header has no field 'ElementDataFile'; get the file again");
-}
-
-/// None where there is no such field or it is no finite number.
-std::optional<double> real_number(const std::string& text) {
-  double number = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || stop != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
-  return number;
 }
 
 /// MetaIO's long has 32 bits on every machine.
@@ -103,51 +108,39 @@ FileDescription description_of(const MetaImageHeader& header, const std::string&
   description.type = type_of(header);
   checked_bytes({size[0], size[1], size[2]}, description.type, path);
   for (std::size_t axis = 0; axis < 3; ++axis) description.size[axis] = int(size[axis]);
-  if (size[3] < 1 || size[3] > std::int64_t(max_time_steps))
-    header.fields.fail(
-        fmt::format("it has {} time steps, not 1 to {}; check its header", size[3], max_time_steps));
-  description.time_steps = int(size[3]);
-  const double slope = real_number(header.fields.text("ElementToIntensityFunctionSlope")).value_or(1);
-  if (slope != 0) {
-    description.scale = slope;
-    description.offset = real_number(header.fields.text("ElementToIntensityFunctionOffset")).value_or(0);
-  }
+  description.time_steps = checked_time_steps(size[3], path);
   return description;
 }
 
-/// Where the scalars of all time steps begin: in the file itself, or in another one beside it.
+/// Where the scalars of all time steps lie: in the file itself, or in another one beside it.
 DenseScalars scalars_of(const MetaImageHeader& header, std::unique_ptr<ByteSource> file,
-                        std::uint64_t all_bytes, const ReadableFiles& files) {
-  const std::string path = file->path();
+                        const ReadableFiles& files) {
   DenseScalars scalars;
   scalars.advice = "its header and its data do not belong together: get the file again";
-  scalars.big_endian = header.flag("BinaryDataByteOrderMSB") || header.flag("ElementByteOrderMSB");
+  scalars.big_endian = header.big_endian();
   const std::string data = header.fields.text("ElementDataFile");
-  if (data == "LOCAL") {
+  if (data == "LOCAL" || data == "Local" || data == "local") {
     scalars.offset = header.bytes;
   } else {
     if (data.empty() || data.starts_with("LIST") || data.find('%') != std::string::npos)
       header.fields.fail("its data lies in several files; join them first");
-    file = open_file(std::filesystem::path(path).parent_path() / data, files);
+    file = open_file(std::filesystem::path(file->path()).parent_path() / data, files);
   }
+  // Counted from where the file begins, also in a file with a header.
   const std::string skip_text = header.fields.text("HeaderSize");
   const std::int64_t skip =
       skip_text.empty() ? 0 : header.fields.integer("HeaderSize", skip_text, -1, most_skipped);
-  if (header.flag("CompressedData")) {
+  if (skip > 0 && std::uint64_t(skip) < scalars.offset)
+    header.fields.fail(fmt::format("its HeaderSize is {}, but its header has {} bytes; check its header", skip,
+                                   scalars.offset));
+  if (skip > 0) scalars.offset = std::uint64_t(skip);
+  if (is_true(header.fields.text("CompressedData"))) {
     if (skip < 0) header.fields.fail("a HeaderSize of -1 means nothing of compressed data; check its header");
-    scalars.bytes = std::make_unique<GzipSource>(std::move(file), scalars.offset + std::uint64_t(skip));
+    scalars.bytes = std::make_unique<GzipSource>(std::move(file), scalars.offset);
     scalars.offset = 0;
     return scalars;
   }
-  if (skip < 0) {  // the data is what the file ends with
-    const std::uint64_t there = file->size().value_or(0);
-    if (there < all_bytes)
-      header.fields.fail(fmt::format("truncated: {} bytes of scalars were expected, {} are there; {}",
-                                     all_bytes, there, scalars.advice));
-    scalars.offset = there - all_bytes;
-  } else {
-    scalars.offset += std::uint64_t(skip);
-  }
+  scalars.at_end = skip < 0;
   scalars.bytes = std::move(file);
   return scalars;
 }
@@ -164,15 +157,11 @@ std::unique_ptr<VolumeFile> open_meta_image(const std::string& path, int time_st
   const MetaImageHeader header = header_of(*file);
   if (const std::string object = header.fields.text("ObjectType"); !object.empty() && object != "Image")
     header.fields.fail(fmt::format("it holds a '{}', not an image; give another file", object));
-  if (!header.fields.text("BinaryData").empty() && !header.flag("BinaryData"))
+  if (const std::string binary = header.fields.text("BinaryData"); !binary.empty() && !is_true(binary))
     header.fields.fail("its data is text; save it as binary data");
   const FileDescription description = description_of(header, path);
-  check_time_step(time_step, description.time_steps, path);
-  const std::uint64_t bytes =
-      checked_bytes({description.size[0], description.size[1], description.size[2]}, description.type, path);
-  DenseScalars scalars =
-      scalars_of(header, std::move(file), bytes * std::uint64_t(description.time_steps), files);
-  scalars.offset += std::uint64_t(time_step) * bytes;
+  DenseScalars scalars = scalars_of(header, std::move(file), files);
+  scalars.time_step = time_step;
   return dense_volume(description, std::move(scalars));
 }
 

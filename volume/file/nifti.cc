@@ -11,7 +11,6 @@
 #include <string_view>
 
 #include "volume/file/file_error.h"
-#include "volume/file/series.h"
 
 namespace understudy::volume {
 
@@ -134,7 +133,7 @@ std::unique_ptr<VolumeFile> open_nifti(const std::string& path, int time_step, c
   std::array<std::int64_t, 3> size{1, 1, 1};
   for (std::size_t axis = 0; axis < 3 && std::int64_t(axis) < dim[0]; ++axis) size[axis] = dim[axis + 1];
   description.type = type_of(code, path);
-  const std::uint64_t bytes = checked_bytes(size, description.type, path);
+  checked_bytes(size, description.type, path);
   for (std::size_t axis = 0; axis < 3; ++axis) description.size[axis] = int(size[axis]);
   if (slope != 0 && std::isfinite(slope) && std::isfinite(intercept)) {
     description.scale = slope;
@@ -144,15 +143,11 @@ std::unique_ptr<VolumeFile> open_nifti(const std::string& path, int time_step, c
     fail_nifti(path, fmt::format("its data would begin at byte {}; get the file again", data_offset));
 
   // Some writers leave the lengths of axes that are not there at 0.
-  const std::int64_t steps = dim[0] < 4 ? 1 : std::max<std::int64_t>(dim[4], 1);
-  if (steps > std::int64_t(max_time_steps))
-    fail_nifti(path, fmt::format("its header speaks of {} time steps (at most {}); get the file again", steps,
-                                 max_time_steps));
-  description.time_steps = int(steps);
-  check_time_step(time_step, description.time_steps, path);
+  description.time_steps = dim[0] < 4 ? 1 : checked_time_steps(std::max<std::int64_t>(dim[4], 1), path);
 
   DenseScalars scalars;
   scalars.offset = std::uint64_t(data_offset);
+  scalars.time_step = time_step;
   scalars.big_endian = header.big_endian();
   scalars.advice = "its header asks for more than it holds: get the file again";
   if (header.one_file()) {
@@ -164,7 +159,6 @@ std::unique_ptr<VolumeFile> open_nifti(const std::string& path, int time_step, c
     scalars.bytes = open_file_or_gzip(
         is_part(header_path, ".hdr") ? with_part(header_path, ".hdr", ".img") : header_path, files);
   }
-  scalars.offset += std::uint64_t(time_step) * bytes;
   return dense_volume(description, std::move(scalars));
 }
 

@@ -10,13 +10,13 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "volume/file/file_error.h"
 #include "volume/file/gzip_source.h"
 #include "volume/file/header_fields.h"
-#include "volume/file/series.h"
 
 namespace understudy::volume {
 
@@ -145,16 +145,17 @@ std::vector<double> lengths_of(const std::string& directions) {
 struct Axis {
   std::int64_t extent = 1;
   double spacing = 1;
-  bool is_time = false;   ///< its kind says so, or it has none and no direction in space
-  bool is_space = false;  ///< nothing says that it is something else
+  bool is_time = false;        ///< its kind says so
+  bool may_be_space = true;    ///< its kind says so, or nothing
+  bool has_direction = false;  ///< in space
 };
 
-std::vector<Axis> axes_of(const HeaderFields& fields, const std::string& path) {
+std::vector<Axis> axes_of(const HeaderFields& fields) {
   const auto count =
       std::size_t(fields.integer("dimension", fields.required("dimension"), 1, std::int64_t(max_axes)));
   const std::vector<std::string> sizes = words_of(fields.required("sizes"), max_axes);
   if (sizes.size() != count)
-    fail_nrrd(path, fmt::format("it has {} axes but {} sizes; check its header", count, sizes.size()));
+    fields.fail(fmt::format("it has {} axes but {} sizes; check its header", count, sizes.size()));
   std::vector<double> distances;
   const std::string directions = fields.text("spacedirections");
   if (!directions.empty())
@@ -169,44 +170,63 @@ std::vector<Axis> axes_of(const HeaderFields& fields, const std::string& path) {
     axes[k].extent = fields.integer("sizes", sizes[k], 0, std::numeric_limits<std::int64_t>::max());
     if (k < distances.size()) axes[k].spacing = believable_spacing(distances[k]);
     const std::string kind = k < kinds.size() ? kinds[k] : "none";
-    const bool unknown = kind == "none" || kind == "???";
-    const bool has_direction = directions.empty() || (k < distances.size() && !std::isnan(distances[k]));
     // 3D Slicer calls the axis of its time series a list.
-    axes[k].is_time = kind == "time" || kind == "list" || (unknown && !has_direction);
-    axes[k].is_space = has_direction && (unknown || kind == "domain" || kind == "space");
+    axes[k].is_time = kind == "time" || kind == "list";
+    axes[k].may_be_space = kind == "none" || kind == "???" || kind == "domain" || kind == "space";
+    axes[k].has_direction = directions.empty() || (k < distances.size() && !std::isnan(distances[k]));
   }
   return axes;
 }
 
-/// Takes the axis along which whole volumes follow each other off `axes`; how many do.
-std::int64_t take_time_steps(std::vector<Axis>& axes, const std::string& path) {
-  if (axes.size() < 4) return 1;
+struct TimeAxis {
+  std::size_t place;
+  bool is_fastest;
+};
+
+/// Where whole volumes follow each other, if they do; of four axes or more.
+std::optional<TimeAxis> time_axis(const std::vector<Axis>& axes, const HeaderFields& fields) {
+  const Axis& last = axes.back();
+  const std::size_t end = axes.size() - 1;
+  if (last.is_time || (last.may_be_space && !last.has_direction)) return TimeAxis{end, false};
+  if (axes.front().is_time) return TimeAxis{0, true};
   const auto is_long = [](const Axis& axis) { return axis.extent != 1; };
-  const bool too_many = std::ranges::count_if(axes, is_long) > 3;
-  for (std::size_t k = 0; too_many && k + 1 < axes.size(); ++k)
-    if (is_long(axes[k]) && !axes[k].is_space)
-      fail_nrrd(path,
-                fmt::format("its axis {} of {} is not one of space; move it behind the others, for example "
-                            "with `unu permute`",
-                            k + 1, axes.size()));
-  const bool unmarked = too_many && axes.back().is_space;
-  if (!axes.back().is_time && !unmarked) return 1;
-  const std::int64_t steps = axes.back().extent;
-  if (steps < 1 || steps > std::int64_t(max_time_steps))
-    fail_nrrd(path, fmt::format("it has {} time steps, not 1 to {}; check its header", steps, max_time_steps));
-  axes.pop_back();
-  return steps;
+  if (std::ranges::count_if(axes, is_long) <= 3) return std::nullopt;
+  for (std::size_t k = 1; k < end; ++k)
+    if (axes[k].is_time && is_long(axes[k]))
+      fields.fail(fmt::format(
+          "its axis of time is number {} of {}; make it the last one, for example with `unu permute`", k + 1,
+          axes.size()));
+  const auto unmarked = [](const Axis& axis) { return axis.may_be_space && axis.has_direction; };
+  if (!std::ranges::all_of(axes, unmarked)) return std::nullopt;
+  if (axes.front().extent >= 2 && axes.front().extent <= 4)
+    fields.fail(
+        "its first axis may be one of components, or of time; say which by the field 'kinds', or cut it, for "
+        "example "
+        "with `unu slice`");
+  return TimeAxis{end, false};
 }
 
-FileDescription description_of(const HeaderFields& fields, const std::string& path) {
-  std::vector<Axis> axes = axes_of(fields, path);
+struct NrrdVolume {
   FileDescription description;
-  description.time_steps = int(take_time_steps(axes, path));
+  bool steps_together = false;
+};
+
+NrrdVolume volume_of(const HeaderFields& fields, const std::string& path) {
+  std::vector<Axis> axes = axes_of(fields);
+  NrrdVolume volume;
+  FileDescription& description = volume.description;
+  while (axes.size() > 3 && axes.back().extent == 1) axes.pop_back();
+  if (axes.size() > 3)
+    if (const auto time = time_axis(axes, fields)) {
+      description.time_steps = checked_time_steps(axes[time->place].extent, path);
+      volume.steps_together = time->is_fastest && description.time_steps > 1;
+      axes.erase(axes.begin() + std::ptrdiff_t(time->place));
+    }
   if (axes.size() < 3)
-    fail_nrrd(path, fmt::format("it has {} axes, a volume has 3; check its header", axes.size()));
+    fields.fail(fmt::format("it has {} axes, a volume has 3; check its header", axes.size()));
   if (axes.size() > 3) std::erase_if(axes, [](const Axis& axis) { return axis.extent == 1; });
   if (axes.size() > 3)
-    fail_nrrd(path, "it has more than three axes longer than 1; cut it first, for example with `unu slice`");
+    fields.fail("it has more than three axes longer than 1; cut it first, for example with `unu slice`");
   axes.resize(3);
   std::array<std::int64_t, 3> size{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -216,7 +236,7 @@ FileDescription description_of(const HeaderFields& fields, const std::string& pa
   description.type = type_of(fields, path);
   checked_bytes(size, description.type, path);
   for (std::size_t k = 0; k < 3; ++k) description.size[k] = int(size[k]);
-  return description;
+  return volume;
 }
 
 std::uint64_t skip_lines(ByteSource& file, std::uint64_t from, std::int64_t lines) {
@@ -243,11 +263,12 @@ std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, int time_step, co
   std::unique_ptr<ByteSource> file = open_file(path, files);
   const NrrdHeader header = read_header(*file);
   const HeaderFields& fields = header.fields;
-  const FileDescription description = description_of(fields, path);
-  check_time_step(time_step, description.time_steps, path);
+  const NrrdVolume volume = volume_of(fields, path);
 
   DenseScalars scalars;
   scalars.offset = header.bytes;
+  scalars.time_step = time_step;
+  scalars.steps_together = volume.steps_together;
   scalars.advice = "its header and its data do not belong together: get the file again";
   std::string data = fields.text("datafile");
   if (!data.empty()) {
@@ -264,18 +285,9 @@ std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, int time_step, co
       skip_text.empty() ? 0 : fields.integer("byte skip", skip_text, -1, std::int64_t(max_skip));
 
   const std::string encoding = lower(fields.required("encoding"));
-  const std::uint64_t bytes =
-      checked_bytes({description.size[0], description.size[1], description.size[2]}, description.type, path);
   if (encoding == "raw") {
-    if (skip >= 0) {
-      scalars.offset += std::uint64_t(skip);
-    } else {  // the data is what the file ends with
-      const std::uint64_t there = file->size().value_or(0), all = bytes * std::uint64_t(description.time_steps);
-      if (there < all)
-        fail_nrrd(path, fmt::format("truncated: {} bytes of scalars were expected, {} are there; {}", all,
-                                    there, scalars.advice));
-      scalars.offset = there - all;
-    }
+    scalars.at_end = skip < 0;
+    if (skip > 0) scalars.offset += std::uint64_t(skip);
     scalars.bytes = std::move(file);
   } else if (encoding == "gzip" || encoding == "gz") {
     if (skip < 0) fail_nrrd(path, "a byte skip of -1 means nothing in compressed data; check its header");
@@ -286,14 +298,13 @@ std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, int time_step, co
                                 "`unu save -f nrrd -e raw`",
                                 encoding));
   }
-  if (bytes_per_scalar(description.type) > 1) {
+  if (bytes_per_scalar(volume.description.type) > 1) {
     const std::string endian = lower(fields.required("endian"));
     if (endian != "little" && endian != "big")
       fail_nrrd(path, fmt::format("its field 'endian' is '{}', not little or big; check its header", endian));
     scalars.big_endian = endian == "big";
   }
-  scalars.offset += std::uint64_t(time_step) * bytes;
-  return dense_volume(description, std::move(scalars));
+  return dense_volume(volume.description, std::move(scalars));
 }
 
 }  // namespace understudy::volume

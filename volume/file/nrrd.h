@@ -13,9 +13,9 @@ namespace understudy::volume {
 /// By the first bytes.
 bool is_nrrd(const std::string& path, const ReadableFiles& files = {});
 
-/// A scalar volume of three axes, at `time_step` along a last axis of time (its kind is time or list, or it is
-/// the fourth and its kind is not said). Where there are more axes, those of length 1 do not count. Throws
-/// FileError.
+/// A scalar volume of three axes, at `time_step` along a first or last axis of time: its kind is time or list,
+/// or it is the last, and nothing says of any axis what it is. Other axes do not count where their length is 1.
+/// Throws FileError.
 std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, int time_step = 0,
                                       const ReadableFiles& files = {});
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A volume in a file, of which any box can be read without the rest.
 //
-// NRRD and UVOL are known by their first bytes, NIfTI and VTI by their names (.nii .hdr .img .vti, each also
-// with .gz), MetaImage too (.mha .mhd), and a name that begins with "synthetic:" needs no file. Everything else is raw scalars, whose size
-// and type come from the caller or from the name (engine.256x256x110, head_256x256x113_int16be.raw.gz).
+// NRRD and UVOL are known by their first bytes, MetaImage, NIfTI and VTI by their names (.mha .mhd, and .nii
+// .hdr .img .vti, each of these also with .gz), and a name that begins with "synthetic:" needs no file.
+// Everything else is raw scalars, whose size and type come from the caller or from the name
+// (engine.256x256x110, head_256x256x113_int16be.raw.gz).
 #pragma once
 
 #include <array>
@@ -81,26 +82,29 @@ class VolumeFile {
 std::unique_ptr<VolumeFile> open_volume(const std::string& name, const FileHints& hints = {},
                                         const ReadableFiles& files = {});
 
-/// Scalars that lie one after the other, x fastest, from `offset` of `bytes` on.
+/// Scalars that lie one after the other, x fastest, from `offset` of `bytes` on: those of all time steps.
 struct DenseScalars {
   std::unique_ptr<ByteSource> bytes;
   std::uint64_t offset = 0;
+  bool at_end = false;          ///< they are what a plain file ends with, and begin no earlier than at `offset`
+  int time_step = 0;            ///< which is read
+  bool steps_together = false;  ///< time is the fastest axis: all steps of a place lie together, then the next
   bool big_endian = false;
   bool nothing_follows = false;  ///< bytes behind the last scalar are an error
   /// What to try when there are too few bytes or too many.
   std::string advice;
 };
 
-/// What a format's reader ends in. Checks the description's sizes, and as far as it is known the number of
-/// bytes.
+/// What a format's reader ends in. Checks the description's sizes, the time step, and as far as it is known the
+/// number of bytes.
 std::unique_ptr<VolumeFile> dense_volume(const FileDescription& description, DenseScalars scalars);
 
 /// The bytes of all scalars. Throws FileError, naming `path`, when an axis is empty or longer than a volume can
 /// be.
 std::uint64_t checked_bytes(const std::array<std::int64_t, 3>& size, ScalarType type, const std::string& path);
 
-/// Throws FileError, naming `path`, where a file of `steps` time steps has no `step`.
-void check_time_step(int step, int steps, const std::string& path);
+/// Throws FileError, naming `path`, where a file cannot hold so many.
+int checked_time_steps(std::int64_t steps, const std::string& path);
 
 /// What may stand between two scalars: anything but a positive finite number that can be squared becomes 1.
 double believable_spacing(double spacing);

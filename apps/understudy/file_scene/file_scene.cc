@@ -60,7 +60,8 @@ void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
   subcommand
       .add_option(
           "VOLUME", arguments.volumes,
-          "raw (size and type in its name: head_256x256x113_int16be.raw.gz), NRRD, NIfTI, MetaImage, VTI or UVOL, or "
+          "raw (size and type in its name: head_256x256x113_int16be.raw.gz), NRRD, NIfTI, MetaImage, VTI or "
+          "UVOL, or "
           "synthetic:XxYxZ[:u8|u16|f32[:shells|lobes|gyroid]]; several, a pattern ('step_*.vti'), or a file "
           "that holds several, are the time steps of a series")
       ->required();

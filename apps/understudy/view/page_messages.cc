@@ -4,7 +4,6 @@
 #include <array>
 #include <chrono>
 #include <cstring>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/understudy/view/image_encoding.h"
@@ -80,7 +79,7 @@ std::string volume_message(const ShownVolume& volume, const ViewState& state) {
   const ShownVolume::Histogram& histogram = volume.histogram();
   return dumped(
       {{"kind", "volume"},
-       {"name", std::filesystem::path(scene.load.file).filename().string()},
+       {"name", volume::name_of({scene.load.file, std::nullopt})},
        {"size", scene.file.size},
        {"spacing", scene.file.spacing},
        {"type", volume::name_of(scene.file.type)},

@@ -36,6 +36,11 @@ TEST_F(Render, ATimeStepOfAFileThatHoldsSeveral) {
     EXPECT_LT(difference(image(of_series + " -n 2"), expected).rms, 1e-6);
 #endif
   }
+  // Of several files the steps are counted through.
+  EXPECT_EQ(difference(image(series + " " + series + " --size 40x40 --time-step 5"),
+                       image(folder_.file("step2_20x18x16.raw") + " --size 40x40"))
+                .rms,
+            0);
   EXPECT_THAT(render(series + " --time-step 3").output, HasSubstr("there is no time step 3; there are 3"));
   const Result converted = shell(std::string(UNDERSTUDY_PROGRAM) + " convert --time-step 2 " + series + " -o " +
                                  folder_.file("s.uvol"));

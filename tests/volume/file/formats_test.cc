@@ -200,6 +200,31 @@ TEST(NrrdFile, TimeStepsOfALastAxis) {
   nrrdNix(nrrd);
 }
 
+/// The steps of each place together, then the next place.
+Bytes interleaved(const Steps& steps) {
+  Bytes all;
+  for (std::size_t at = 0; at < steps.each[0].size(); at += 2)
+    for (const Bytes& step : steps.each) all.insert(all.end(), &step[at], &step[at] + 2);
+  return all;
+}
+
+TEST(NrrdFile, TimeStepsOfAFirstAxis) {
+  const TemporaryFolder folder;
+  const Steps steps;
+  const std::string header =
+      "NRRD0004\ntype: short\nendian: little\ndimension: 4\nsizes: 3 13 7 9\nkinds: list domain domain domain\n"
+      "space directions: none (0.5,0,0) (0,1.5,0) (0,0,2.5)\n";
+  expect_holds_steps(
+      folder.write("a.nrrd", joined(text_bytes(header + "encoding: raw\n\n"), interleaved(steps))), steps);
+  expect_holds_steps(
+      folder.write("b.nrrd", joined(text_bytes(header + "encoding: gzip\n\n"), gzipped(interleaved(steps)))),
+      steps);
+  Bytes cut = joined(text_bytes(header + "encoding: raw\n\n"), interleaved(steps));
+  cut.pop_back();
+  EXPECT_THAT([&] { open_volume(folder.write("c.nrrd", cut)); },
+              ThrowsMessage<FileError>(HasSubstr("truncated")));
+}
+
 TEST(NrrdFile, WhatIsTimeIsSaidByKindsAndDirections) {
   const TemporaryFolder folder;
   const Steps steps;
@@ -209,8 +234,10 @@ TEST(NrrdFile, WhatIsTimeIsSaidByKindsAndDirections) {
                          steps.all));
   };
   const auto described = [&](const std::string& fields) { return open_volume(with(fields))->description(); };
-  const std::string directions = "space directions: (0.5,0,0) (0,1.5,0) (0,0,2.5) none\n";
-  expect_holds_steps(with(directions + "dimension: 4\nsizes: 13 7 9 3"), steps);
+  const std::string directions = "space directions: (0.5,0,0) (0,1.5,0) (0,0,2.5) none\ndimension: 4\n";
+  expect_holds_steps(with(directions + "sizes: 13 7 9 3"), steps);
+  expect_holds_steps(with(directions + "sizes: 13 7 9 3\nkinds: domain domain domain domain"), steps);
+  expect_holds_steps(with("spacings: 0.5 1.5 2.5 1 1\ndimension: 5\nsizes: 13 7 9 3 1"), steps);
   // Slices over time.
   const FileDescription slices = described("dimension: 4\nsizes: 13 7 1 27\nkinds: domain domain domain time");
   EXPECT_EQ(slices.size, (std::array{13, 7, 1}));
@@ -219,6 +246,8 @@ TEST(NrrdFile, WhatIsTimeIsSaidByKindsAndDirections) {
   EXPECT_EQ(described("dimension: 4\nsizes: 13 7 1 27").size, (std::array{13, 7, 27}));
   EXPECT_EQ(described("dimension: 3\nsizes: 13 7 27\nkinds: domain domain time").time_steps, 1);
   EXPECT_EQ(described("dimension: 4\nsizes: 1 13 7 27\nkinds: list domain domain domain").time_steps, 1);
+  EXPECT_EQ(described("dimension: 4\nsizes: 1 13 7 27\nkinds: vector domain domain domain").size,
+            (std::array{13, 7, 27}));
   const auto trouble = [&](const std::string& fields) -> std::string {
     try {
       described(fields);
@@ -227,12 +256,21 @@ TEST(NrrdFile, WhatIsTimeIsSaidByKindsAndDirections) {
     }
     return "";
   };
-  EXPECT_THAT(trouble("dimension: 4\nsizes: 3 13 7 9\nkinds: list domain domain domain"),
-              HasSubstr("its axis 1 of 4 is not one of space; move it behind the others"));
-  EXPECT_THAT(trouble("dimension: 4\nsizes: 13 7 9 3\nkinds: domain domain domain 3-vector"),
-              HasSubstr("more than three axes longer than 1"));
+  EXPECT_THAT(trouble("dimension: 4\nsizes: 13 3 7 9\nkinds: domain time domain domain"),
+              HasSubstr("its axis of time is number 2 of 4; make it the last one"));
+  for (const char* components : {"sizes: 13 7 9 3\nkinds: domain domain domain 3-vector",
+                                 "sizes: 3 13 7 9\nkinds: RGB-color domain domain domain"})
+    EXPECT_THAT(trouble(std::string("dimension: 4\n") + components),
+                HasSubstr("more than three axes longer than 1"));
+  EXPECT_THAT(trouble("dimension: 4\nsizes: 3 13 7 9"), HasSubstr("may be one of components, or of time"));
   EXPECT_THAT(trouble("dimension: 5\nsizes: 13 7 3 3 3"), HasSubstr("more than three axes longer than 1"));
   EXPECT_THAT(trouble("dimension: 4\nsizes: 13 7 9 100001"), HasSubstr("100001 time steps, not 1 to 100000"));
+  FileHints last;
+  last.time_step = 3;
+  const std::string short_file = with("dimension: 4\nsizes: 13 7 9 4\nkinds: domain domain domain time");
+  EXPECT_THAT(
+      [&] { open_volume(short_file, last); },
+      ThrowsMessage<FileError>(HasSubstr("bytes of scalars of time step 3 were expected, 0 are there")));
 }
 
 TEST(MetaImageFile, EveryTypeInOneFileAndInTwo) {
@@ -278,17 +316,33 @@ TEST(MetaImageFile, TimeStepsOfTheFourthAxis) {
   expect_holds_steps(folder.write("a.mha", joined(text_bytes(header), steps.all)), steps);
 }
 
-TEST(MetaImageFile, WhatElementsMean) {
+TEST(MetaImageFile, IsReadAsMetaIoReadsIt) {
   const TemporaryFolder folder;
-  const std::string header =
-      "NDims = 2\nElementToIntensityFunctionSlope = 0.5\nElementToIntensityFunctionOffset = -1000\n"
-      "DimSize = 13 7\nElementSize = 2 3\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
+  const Bytes scalars = random_scalars(size, ScalarType::i16, 41);
+  const std::string common = "NDims = 3\nDimSize = 13 7 9\nElementType = MET_SHORT\n";
+  for (const char* local : {"LOCAL\n", "Local\n", "local\r\n"})
+    expect_holds(folder.write("a.mha", joined(text_bytes(common + "ElementDataFile = " + local), scalars)),
+                 scalars, ScalarType::i16);
+  // The header's size is counted from where the file begins.
+  std::string padded = common + "HeaderSize = 200\nElementDataFile = LOCAL\n";
+  padded.resize(200, '#');
+  expect_holds(folder.write("b.mha", joined(text_bytes(padded), scalars)), scalars, ScalarType::i16);
+  expect_holds(
+      folder.write("c.mha", joined(text_bytes("ElementByteOrderMSB = True\nBinaryDataByteOrderMSB = False\n" +
+                                              common + "ElementDataFile = LOCAL\n"),
+                                   scalars)),
+      scalars, ScalarType::i16);
+  std::string long_header = common;
+  for (int frame = 0; frame < 3000; ++frame)
+    long_header += fmt::format("Seq_Frame{:04}_Timestamp = 1.5\n", frame);
+  expect_holds(folder.write("d.mha", joined(text_bytes(long_header + "ElementDataFile = LOCAL\n"), scalars)),
+               scalars, ScalarType::i16);
+  const std::string flat =
+      "NDims = 2\nDimSize = 13 7\nElementSize = 2 3\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
   const FileDescription about =
-      open_volume(folder.write("a.mha", header + std::string(13 * 7, 'x')))->description();
+      open_volume(folder.write("e.mha", flat + std::string(13 * 7, 'x')))->description();
   EXPECT_EQ(about.size, (std::array{13, 7, 1}));
   EXPECT_EQ(about.spacing, (Vec3{2, 3, 1}));
-  EXPECT_EQ(about.scale, 0.5);
-  EXPECT_EQ(about.offset, -1000);
 }
 
 TEST(NiftiFile, TimeStepsOfTheFourthAxis) {
@@ -308,6 +362,26 @@ TEST(NiftiFile, TimeStepsOfTheFourthAxis) {
     nifti_image_free(image);
     expect_holds_steps(name, steps);
   }
+}
+
+TEST(NiftiFile, AxesThatAreNotThereAndAxesBehindTime) {
+  const TemporaryFolder folder;
+  const Bytes scalars = random_scalars(size, ScalarType::u8, 43);
+  const auto with = [&](const std::array<std::int16_t, 8>& dim) {
+    Bytes file(352);
+    const std::int32_t header_bytes = 348;
+    const std::array<std::int16_t, 2> type_and_bits{DT_UINT8, 8};
+    const float data_offset = 352;
+    std::memcpy(file.data(), &header_bytes, 4);
+    std::memcpy(file.data() + 40, dim.data(), 16);
+    std::memcpy(file.data() + 70, type_and_bits.data(), 4);
+    std::memcpy(file.data() + 108, &data_offset, 4);
+    std::memcpy(file.data() + 344, "n+1", 4);
+    return folder.write("a.nii", joined(joined(file, scalars), scalars));
+  };
+  expect_holds(with({4, 13, 7, 9, 0, 0, 0, 0}), scalars, ScalarType::u8);
+  expect_holds(with({5, 13, 7, 9, 1, 2, 1, 1}), scalars, ScalarType::u8);
+  EXPECT_EQ(open_volume(folder.file("a.nii"))->description().time_steps, 1);
 }
 
 TEST(NiftiFile, WhatNiftiioWritesInOneFileAndInTwo) {

@@ -40,6 +40,11 @@ TEST(Series, OrdersAnyTwoNamesOneWay) {
   EXPECT_TRUE(comes_before("a99999999999999999999", "a100000000000000000000"));
 }
 
+TEST(Series, AStepHasAName) {
+  EXPECT_EQ(name_of({"/a/step_3.vti", std::nullopt}), "step_3.vti");
+  EXPECT_EQ(name_of({"/a/bold.nii.gz", 7}), "bold.nii.gz, 7");
+}
+
 TEST(Series, ANameThatIsThereMeansItself) {
   const TemporaryFolder folder;
   folder.write("a[1].raw", std::string("x"));

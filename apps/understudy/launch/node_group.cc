@@ -100,6 +100,13 @@ std::string why_not_started(Launch launch) {
       patience_with_start.count());
 }
 
+/// Throws std::runtime_error.
+MpiLauncher mpi_launcher() {
+  const auto found = find_mpi_launcher(mpi_of_nodes().value_or(MpiFamily::open_mpi));
+  if (const auto* const obstacle = std::get_if<std::string>(&found)) throw std::runtime_error(*obstacle);
+  return std::get<MpiLauncher>(found);
+}
+
 bool is_on_path(const std::string& program) {
   return program.find('/') != std::string::npos ? std::filesystem::exists(program)
                                                 : program_on_path(program).has_value();
@@ -167,15 +174,13 @@ void NodeGroup::start_on(const Placement& placement) {
   std::filesystem::remove_all(group_folder_, not_removed);
   group_folder_ = plan_.folder / fmt::format("group-{}", ++groups_);
   std::filesystem::create_directories(shared_memory_folder(group_folder_));
-  const auto found = find_mpi_launcher(mpi_of_nodes().value_or(MpiFamily::open_mpi));
-  if (const auto* const obstacle = std::get_if<std::string>(&found)) throw std::runtime_error(*obstacle);
-  const auto& launcher = std::get<MpiLauncher>(found);
+  if (!launcher_) launcher_ = mpi_launcher();
   if (!placement.hosts.empty())
-    std::ofstream(own_hostfile(group_folder_)) << own_hostfile_text(launcher.version.family, placement.hosts);
+    std::ofstream(own_hostfile(group_folder_)) << own_hostfile_text(launcher_->version.family, placement.hosts);
   log_start_ = size_of(log_of(plan_));
   why_ended_.clear();
   started_at_ = Clock::now();
-  mpirun_.emplace(mpirun_command(installation_, plan_, launcher, placement, group_folder_));
+  mpirun_.emplace(mpirun_command(installation_, plan_, *launcher_, placement, group_folder_));
 }
 
 void NodeGroup::try_to(const std::function<void()>& start) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "apps/understudy/hosts/host_probe.h"
+#include "apps/understudy/hosts/mpi_launcher.h"
 #include "apps/understudy/hosts/placement.h"
 #include "apps/understudy/launch/node_choices.h"
 #include "apps/understudy/launch/restarts.h"
@@ -74,7 +75,8 @@ class NodeGroup {
   Installation installation_;
   NodeGroupPlan plan_;
   compositor::Broker broker_;
-  std::optional<HostProbe> probe_;  ///< before a start
+  std::optional<HostProbe> probe_;       ///< before a start
+  std::optional<MpiLauncher> launcher_;  ///< asked for its version once: the broker waits meanwhile
   std::optional<ChildProcess> mpirun_;
   std::filesystem::path group_folder_;  ///< in the plan's folder: what mpirun_ keeps there
   int groups_ = 0;                      ///< started so far

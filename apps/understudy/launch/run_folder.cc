@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <ctime>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -19,6 +20,8 @@ namespace understudy::launcher {
 namespace {
 
 constexpr const char* prefix = "understudy-run-";
+/// In every folder that a launcher made: one of such a name may also be a user's own.
+constexpr const char* mark = ".made-by-understudy";
 
 /// A launcher locks its folder right after making it; younger ones are left alone for that moment.
 constexpr std::time_t young_seconds = 10;
@@ -30,8 +33,10 @@ void remove_folders_of_dead_launchers(const std::filesystem::path& parent) {
     if (!entry.path().filename().string().starts_with(prefix)) continue;
     const int folder = open(entry.path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (folder < 0) continue;
-    struct stat status {};
+    struct stat status {
+    }, marked{};
     if (fstat(folder, &status) == 0 && status.st_uid == geteuid() &&
+        fstatat(folder, mark, &marked, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(marked.st_mode) &&
         status.st_ctime + young_seconds < std::time(nullptr) && flock(folder, LOCK_EX | LOCK_NB) == 0) {
       std::filesystem::remove_all(entry.path(), error);
     }
@@ -51,6 +56,7 @@ RunFolder::RunFolder() {
   }
   path_ = name;
   lock();
+  std::ofstream(path_ / mark) << "";
 }
 
 RunFolder::RunFolder(std::filesystem::path made_for_it) : path_(std::move(made_for_it)) {

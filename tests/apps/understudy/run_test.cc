@@ -83,7 +83,7 @@ class UnderstudyRun : public ::testing::Test {
     return false;
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("understudy-run-test-" + std::to_string(getpid()));
+  fs::path folder_ = fs::temp_directory_path() / ("run-command-test-" + std::to_string(getpid()));
 };
 
 /// Characters of UTF-8.
@@ -327,13 +327,33 @@ class RunOnNodes {
   bool viewer_runs() const { return fs::exists(socket_); }
   std::set<pid_t> ranks() const { return ranks_of(fs::path(contents(socket_)).parent_path()); }
 
-  /// Ends the viewer; the launcher's exit status.
+  RunOnNodes(const RunOnNodes&) = delete;
+  RunOnNodes& operator=(const RunOnNodes&) = delete;
+  ~RunOnNodes() {
+    if (launcher_ > 0) end();
+  }
+
+  /// Ends the viewer; the launcher's exit status, or -1 when it had to be killed after a minute.
   int end() {
     std::ofstream(done_) << "";
     int status = 0;
-    return waitpid(launcher_, &status, 0) == launcher_ ? WEXITSTATUS(status) : -1;
+    for (int tenths = 0; tenths < 600; ++tenths) {
+      if (waitpid(launcher_, &status, WNOHANG) == launcher_) {
+        launcher_ = -1;
+        return WEXITSTATUS(status);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    kill(launcher_, SIGKILL);
+    waitpid(launcher_, &status, 0);
+    launcher_ = -1;
+    return -1;
   }
   std::string said() const { return contents(said_); }
+  /// What it said and who waits where, for a failure's message.
+  std::string state() const {
+    return said() + shell("ps -eo pid,ppid,stat,wchan:20,etime,args --forest").output;
+  }
 
  private:
   fs::path socket_, done_, said_;
@@ -377,7 +397,7 @@ TEST_F(UnderstudyRun, StartsAnotherNodeGroupWhenMpirunHangs) {
   setenv("PATH", (folder_.string() + ":" + path).c_str(), 1);
   RunOnNodes run(folder_, 2);
   setenv("PATH", path.c_str(), 1);
-  EXPECT_TRUE(comes_true([&] { return run.viewer_runs() && run.ranks().size() == 2; }));
+  EXPECT_TRUE(comes_true([&] { return run.viewer_runs() && run.ranks().size() == 2; })) << run.state();
   EXPECT_EQ(run.end(), 0);
   EXPECT_THAT(run.said(),
               HasSubstr("the render nodes are gone (they did not start within 60 s); starting 2 again (1 of "

@@ -46,6 +46,9 @@ void Loads::read_on(VolumeKey key) {
     throw RequestRefused(fmt::format("volume {} is not being loaded here", key.volume));
   Load& load = found->second;
   if (!load.stream || load.stream->done()) return;
+  const bool is_there = load.stream->approach(passed_bytes);
+  load.figures.bytes_read = load.stream->bytes_read();
+  if (!is_there) return;
   const volume::TexelStream::SliceSegment slice_range = load.stream->next(part_bytes);
   renderer_.add_texels(key, {&slice_range.box, 1}, slice_range.texels);
   const volume::TexelFigures& figures = load.stream->figures();

@@ -21,6 +21,8 @@ class Loads {
  public:
   /// So much of a file is read in one go.
   static constexpr std::size_t part_bytes = std::size_t(16) << 20;
+  /// Of a compressed file, what one call decompresses before its share: a fraction of a second.
+  static constexpr std::uint64_t passed_bytes = std::uint64_t(64) << 20;
 
   /// Texels go to `renderer`, as rank `rank` of it, from `files` alone.
   Loads(RankRenderer& renderer, int rank, volume::ReadableFiles files = {})

@@ -9,6 +9,7 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "volume/file/file_error.h"
@@ -91,18 +92,28 @@ bool has_extension(const std::string& path, std::string_view extension) {
          std::equal(extension.begin(), extension.end(), path.end() - std::ptrdiff_t(extension.size()), same);
 }
 
-std::size_t ForwardSource::read(std::uint64_t offset, std::span<std::byte> to) {
+bool ForwardSource::pass(std::uint64_t offset, std::uint64_t most) {
   if (offset < position_ || position_ == 0) {
     restart();
     position_ = 0;
   }
   std::vector<std::byte> passed(std::size_t(std::min<std::uint64_t>(offset - position_, 1U << 16)));
-  while (position_ < offset) {
-    const std::size_t wanted = std::size_t(std::min<std::uint64_t>(offset - position_, passed.size()));
+  const std::uint64_t end = position_ + std::min(most, offset - position_);
+  while (position_ < end) {
+    const std::size_t wanted = std::size_t(std::min<std::uint64_t>(end - position_, passed.size()));
     const std::size_t got = next(std::span(passed).first(wanted));
     position_ += got;
-    if (got < wanted) return 0;
+    if (got < wanted) return false;
   }
+  return true;
+}
+
+bool ForwardSource::approach(std::uint64_t offset, std::uint64_t most) {
+  return !pass(offset, most) || position_ >= offset;
+}
+
+std::size_t ForwardSource::read(std::uint64_t offset, std::span<std::byte> to) {
+  if (!pass(offset, std::numeric_limits<std::uint64_t>::max())) return 0;
   const std::size_t got = next(to);
   position_ += got;
   return got;

@@ -20,6 +20,8 @@ class ByteSource {
 
   /// Fills `to` with the bytes from `offset` on and returns how many there were: fewer only at the end.
   virtual std::size_t read(std::uint64_t offset, std::span<std::byte> to) = 0;
+  /// Passes over up to `most` of the bytes that a read at `offset` must pass over first; true: none are left.
+  virtual bool approach(std::uint64_t /*offset*/, std::uint64_t /*most*/) { return true; }
   /// How many bytes there are, where that is known without reading them.
   virtual std::optional<std::uint64_t> size() const { return std::nullopt; }
   /// What has been read of the file itself.
@@ -43,6 +45,7 @@ class ForwardSource : public ByteSource {
   explicit ForwardSource(std::shared_ptr<ByteSource> below) : below_(std::move(below)) {}
 
   std::size_t read(std::uint64_t offset, std::span<std::byte> to) final;
+  bool approach(std::uint64_t offset, std::uint64_t most) final;
   std::uint64_t bytes_from_file() const override { return below_->bytes_from_file(); }
   const std::string& path() const override { return below_->path(); }
 
@@ -53,6 +56,9 @@ class ForwardSource : public ByteSource {
   ByteSource& below() { return *below_; }
 
  private:
+  /// False where the bytes end before `offset`.
+  bool pass(std::uint64_t offset, std::uint64_t most);
+
   std::shared_ptr<ByteSource> below_;
   std::uint64_t position_ = 0;
 };

@@ -105,13 +105,22 @@ std::uint64_t TexelStream::texels_done() const {
   return texels_in(done);
 }
 
+TexelBox TexelStream::next_slice() const {
+  TexelBox slice = box_;
+  slice.low[2] = next_z_;
+  slice.high[2] = next_z_ + 1;
+  return slice;
+}
+
+bool TexelStream::approach(std::uint64_t max_bytes) {
+  return done() || file_->approach(next_slice(), max_bytes);
+}
+
 TexelStream::SliceSegment TexelStream::next(std::size_t max_bytes) {
   const std::size_t scalar = bytes_per_scalar(file_->description().type);
-  SliceSegment slice_range{box_, {}};
-  slice_range.box.low[2] = next_z_;
-  slice_range.box.high[2] = next_z_ + 1;
+  SliceSegment slice_range{next_slice(), {}};
   const std::size_t slice = texels_in(slice_range.box);
-  const std::size_t slices = std::max<std::size_t>(1, max_bytes / (slice * scalar));
+  const std::size_t slices = std::max<std::size_t>(1, max_bytes / (slice * file_->bytes_for_scalar()));
   slice_range.box.high[2] = int(std::min<std::size_t>(std::size_t(box_.high[2] - next_z_), slices)) + next_z_;
   const std::size_t count = texels_in(slice_range.box);
   scalars_.resize(count * scalar);

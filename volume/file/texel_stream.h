@@ -61,14 +61,20 @@ class TexelStream {
   std::uint64_t bytes_read() const { return file_->bytes_read(); }
   const TexelFigures& figures() const { return figures_; }
 
+  /// Of a compressed file, passes over up to `max_bytes` of those before the next slices; true: none are left.
+  /// So next() can be kept from passing over all of them at once. Throws FileError.
+  bool approach(std::uint64_t max_bytes);
+
   struct SliceSegment {
     TexelBox box;
     std::span<const std::byte> texels;  ///< valid until the next call
   };
-  /// The next slices of the box: as many as fit in `max_bytes` of scalars, one at least. Throws FileError.
+  /// The next slices of the box: as many as `max_bytes` of the file's scalars hold, one at least. Throws
+  /// FileError.
   SliceSegment next(std::size_t max_bytes);
 
  private:
+  TexelBox next_slice() const;
   template <typename Scalar>
   void convert(std::span<const std::byte> scalars);
   template <typename Scalar, typename Texel>

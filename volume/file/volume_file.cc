@@ -67,9 +67,7 @@ class DenseVolume : public VolumeFile {
       for (int y = box.low[1]; y < box.high[1]; y += row_step) {
         const std::size_t count =
             std::size_t(box.high[0] - box.low[0]) * std::size_t(row_step) * std::size_t(slice_step) * scalar_;
-        const std::uint64_t first =
-            (std::uint64_t(z) * std::uint64_t(size[1]) + std::uint64_t(y)) * std::uint64_t(size[0]) +
-            std::uint64_t(box.low[0]);
+        const std::uint64_t first = number_of({box.low[0], y, z});
         if (place_ == scalar_)
           fetch(first * scalar_, left.first(count));
         else
@@ -81,6 +79,10 @@ class DenseVolume : public VolumeFile {
       swap_byte_order(scalars, scalar_);
   }
 
+  bool approach(const TexelBox& box, std::uint64_t most) override {
+    return scalars_.bytes->approach(scalars_.offset + number_of(box.low) * place_, most);
+  }
+  std::size_t bytes_for_scalar() const override { return place_; }
   std::uint64_t bytes_read() const override { return scalars_.bytes->bytes_from_file(); }
   std::size_t memory_to_read(const TexelBox& /*box*/) const override {
     return place_ == scalar_ ? 0 : std::max(piece_bytes, place_);
@@ -88,6 +90,14 @@ class DenseVolume : public VolumeFile {
 
  private:
   const std::string& path() const { return scalars_.bytes->path(); }
+
+  /// Counted from the volume's first scalar, x fastest.
+  std::uint64_t number_of(const std::array<int, 3>& place) const {
+    const std::array<int, 3>& size = description().size;
+    return (std::uint64_t(place[2]) * std::uint64_t(size[1]) + std::uint64_t(place[1])) *
+               std::uint64_t(size[0]) +
+           std::uint64_t(place[0]);
+  }
 
   void fetch(std::uint64_t at, std::span<std::byte> to) {
     const std::size_t got = scalars_.bytes->read(scalars_.offset + at, to);

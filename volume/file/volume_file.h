@@ -65,6 +65,11 @@ class VolumeFile {
   /// The scalars of `box`, tightly packed, x fastest, in native byte order. Boxes in the order of the file (x
   /// fastest, z slowest) are read in one pass, also from compressed files. Throws FileError.
   virtual void read(const TexelBox& box, std::span<std::byte> scalars) = 0;
+  /// Of a compressed file, passes over up to `most` of the bytes before `box`; true: none are left to pass.
+  /// Throws FileError.
+  virtual bool approach(const TexelBox& /*box*/, std::uint64_t /*most*/) { return true; }
+  /// Bytes that are read for each scalar.
+  virtual std::size_t bytes_for_scalar() const { return bytes_per_scalar(description_.type); }
   /// What has been read of the file so far, headers included.
   virtual std::uint64_t bytes_read() const = 0;
   /// Values between which those of `box` lie, as far as the file tells them without its scalars; low > high:

@@ -55,6 +55,37 @@ std::string written(const TemporaryFolder& folder, const std::string& type, cons
   return folder.write("v_" + std::to_string(values.size() / 2) + "x1x2_" + type + ".raw", bytes_of(values));
 }
 
+TEST(TexelStream, ACompressedFileIsPassedOverInParts) {
+  const TemporaryFolder folder;
+  const std::array<int, 3> size{13, 7, 200};
+  const Bytes scalars = random_scalars(size, ScalarType::u8, 5);
+  const TexelBox box{{0, 0, 150}, size};
+  for (const auto& [name, bytes] :
+       {std::pair{"a_13x7x200.raw.gz", gzipped(scalars)}, {"b_13x7x200.raw", scalars}}) {
+    const std::string path = folder.write(name, bytes);
+    TexelStream stream(open_volume(path), {}, box);
+    int calls = 1;
+    while (!stream.approach(500)) ++calls;
+    EXPECT_EQ(calls, path.ends_with(".gz") ? 28 : 1) << "150 slices of 91 bytes each";
+    Bytes texels;
+    while (!stream.done()) {
+      EXPECT_TRUE(stream.approach(500));
+      const TexelStream::SliceSegment slices = stream.next(1000);
+      texels.insert(texels.end(), slices.texels.begin(), slices.texels.end());
+    }
+    EXPECT_TRUE(stream.approach(500));
+    EXPECT_TRUE(std::ranges::equal(texels, std::span(scalars).subspan(150 * 91)));
+  }
+  // Of a file that ends too early, reading says so.
+  Bytes cut = gzipped(scalars);
+  cut.resize(cut.size() / 2);
+  TexelStream stream(open_volume(folder.write("c_13x7x200.raw.gz", cut)), {}, box);
+  while (!stream.approach(500)) {
+  }
+  EXPECT_THAT([&] { stream.next(1000); },
+              ::testing::ThrowsMessage<FileError>(::testing::HasSubstr("truncated")));
+}
+
 TEST(TexelStream, NarrowIntegersAreExact) {
   const TemporaryFolder folder;
   const std::vector<std::int16_t> wide{-32768, -1, 0, 1, 1234, 32767};

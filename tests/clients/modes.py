@@ -50,6 +50,8 @@ TILE = 16
 MAX_EXCESS, MAX_COMMON = 3.0, 8.0
 # A viewer that draws in the end is looked at for so many frames and for so long, if its frames are short.
 FRAMES_HANDED_BACK, HANDED_BACK_MS, SHORT_FRAME_MS = 60, 5000, 500
+# A viewer that says less than this of a frame has only asked for it to be drawn later, as mayavi does.
+DRAWN_MS = 1
 # Slices that are blended into 8 bits: each blend rounds, and a hundred of them drift by some 255ths.
 BOUND_OF_SLICES = 4.0
 SLICES = ("pyqtgraph", "pymol", "osgvolume")
@@ -155,7 +157,7 @@ class Run:
         words = log.read_text(encoding="utf-8", errors="replace")
         self.report = json.loads(report.read_text(encoding="utf-8")) if report.exists() else None
         measured = re.search(r"^FRAME ms median ([0-9.]+)", words, re.MULTILINE)
-        self.frame_ms = float(measured.group(1)) if measured else None
+        self.frame_ms = float(measured.group(1)) if measured and float(measured.group(1)) >= DRAWN_MS else None
         self.trouble = ("" if image.exists() else f"no end after {seconds} s" if status is None
                         else f"no image (exit status {status}): see {log.relative_to(ROOT)}")
 
@@ -183,17 +185,20 @@ def interval(ratios):
     return statistics.median(ratios), math.exp(middle - half), math.exp(middle + half)
 
 
-def frames_of(row, arguments):
+def pair_of(row, number, frames, arguments):
+    """Bare and substituted runs, one after the other; which of them comes first changes from round to round."""
+    ways = ("bare", "substituted")
+    return {way: Run(row, way, frames, arguments.seconds) for way in (ways if number % 2 == 0 else reversed(ways))}
+
+
+def frames_needed(pair, arguments):
     """As many as were asked for. More where the viewer draws in the end, and its frames are short: what a volume that is
     handed back costs is paid in its first frames, and of few frames these are many."""
-    if arguments.frames >= FRAMES_HANDED_BACK:
-        return arguments.frames
-    bare = Run(row, "bare", arguments.frames, arguments.seconds)
-    run = Run(row, "substituted", arguments.frames, arguments.seconds)
+    bare, run = pair["bare"], pair["substituted"]
     short = bare.frame_ms is not None and bare.frame_ms <= SHORT_FRAME_MS
     if not short or run.trouble or run.draws("left") <= run.draws("substituted"):
         return arguments.frames
-    return max(FRAMES_HANDED_BACK, round(HANDED_BACK_MS / bare.frame_ms))
+    return max(arguments.frames, FRAMES_HANDED_BACK, round(HANDED_BACK_MS / bare.frame_ms))
 
 
 def worst_tile_of_own_frames(row, frames, arguments):
@@ -207,30 +212,28 @@ def worst_tile_of_own_frames(row, frames, arguments):
 
 
 def row_of(row, arguments):
-    frames = frames_of(row, arguments)
-    runs = {"bare": [], "substituted": []}
-    ratios, tiles = [], [None, None, None]
+    pair = pair_of(row, 0, arguments.frames, arguments)
+    frames = frames_needed(pair, arguments)
+    bare_ms, ratios, tiles = [], [], [None, None, None]
     for number in range(arguments.rounds):
-        pair = {}
-        for way in ("bare", "substituted") if number % 2 == 0 else ("substituted", "bare"):
-            pair[way] = Run(row, way, frames, arguments.seconds)
-            runs[way].append(pair[way])
-        if pair["bare"].trouble:
-            return {"row": row, "trouble": f"the bare viewer: {pair['bare'].trouble}"}
-        if pair["substituted"].trouble:
-            return {"row": row, "trouble": pair["substituted"].trouble}
-        if pair["bare"].frame_ms and pair["substituted"].frame_ms:
-            ratios.append(pair["bare"].frame_ms / pair["substituted"].frame_ms)
-        for place, (a, b) in enumerate(zip(pair["bare"].images, pair["substituted"].images)):
+        if number > 0 or frames != arguments.frames:
+            pair = pair_of(row, number, frames, arguments)
+        bare, run = pair["bare"], pair["substituted"]
+        if bare.trouble or run.trouble:
+            return {"row": row, "trouble": f"the bare viewer: {bare.trouble}" if bare.trouble else run.trouble}
+        if bare.frame_ms and run.frame_ms:
+            bare_ms.append(bare.frame_ms)
+            ratios.append(bare.frame_ms / run.frame_ms)
+        for place, (a, b) in enumerate(zip(bare.images, run.images)):
             tile = worst_tile(a, b)
             if tile is not None:
                 tiles[place] = max(tile, tiles[place] or 0.0)
     if any(mode in BY_THE_CLOCK for mode in row[2].split(",")):
         tiles[1] = worst_tile_of_own_frames(row, frames, arguments)
-    last = runs["substituted"][-1]
+    last = pair["substituted"]
     ratio, low, high = interval(ratios)
     return {"row": row, "ratio": ratio, "low": low, "high": high, "rounds": len(ratios), "tiles": tiles,
-            "bare_ms": statistics.median(run.frame_ms for run in runs["bare"]) if ratios else None,
+            "bare_ms": statistics.median(bare_ms) if bare_ms else None,
             "substituted": last.draws("substituted"), "left": last.draws("left"), "reason": last.reason()}
 
 

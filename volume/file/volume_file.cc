@@ -111,7 +111,7 @@ class DenseVolume : public VolumeFile {
   /// Of each place from `first` on, the scalar of the time step.
   void fetch_of_places(std::uint64_t first, std::span<std::byte> to) {
     const std::size_t in_all = to.size() / scalar_;
-    const std::size_t at_once = std::clamp<std::size_t>(piece_bytes / place_, 1, in_all);
+    const std::size_t at_once = std::max<std::size_t>(1, std::min(piece_bytes / place_, in_all));
     std::vector<std::byte> piece(at_once * place_);
     for (std::size_t done = 0; done < in_all;) {
       const std::size_t places = std::min(at_once, in_all - done);

@@ -18,6 +18,7 @@
 #include "apps/bench/balance_trace.h"
 #include "volume/file/texel_stream.h"
 #include "volume/file/volume_file.h"
+#include "volume/opening/open_volume.h"
 #include "volume/orbit_camera.h"
 #include "volume/raycast/segment_scene.h"
 #include "volume/request.h"

@@ -15,6 +15,7 @@
 
 #include "volume/file/hierarchical_writer.h"
 #include "volume/file/volume_file.h"
+#include "volume/opening/open_volume.h"
 
 namespace {
 

@@ -24,6 +24,7 @@
 #include "volume/file/texel_stream.h"
 #include "volume/file/volume_file.h"
 #include "volume/kd_tree.h"
+#include "volume/opening/open_volume.h"
 #include "volume/orbit_camera.h"
 #include "volume/partition.h"
 #include "volume/raycast/expected_samples.h"

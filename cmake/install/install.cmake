@@ -65,7 +65,7 @@ endfunction()
 
 install_component(raycast
   TARGETS raycast understudy_volume files understudy_volume_file
-  HEADERS volume/brick/brick_store.h volume/brick/histogram.h volume/file/file_error.h volume/file/volume_file.h
+  HEADERS volume/brick/brick_store.h volume/brick/histogram.h volume/file/file_error.h volume/opening/open_volume.h
     volume/frame_counts.h volume/image.h volume/matrix.h volume/orbit_camera.h volume/raycast/ray_caster.h
     volume/reference/pixel_integral.h volume/request.h volume/transfer_control_points.h)
 install_component(plugin TARGETS plugin understudy_unit_plugin HEADERS spu/plugin/unit_plugin.h)

@@ -9,6 +9,7 @@
 
 #include "volume/description.h"
 #include "volume/file/file_error.h"
+#include "volume/opening/open_volume.h"
 
 namespace understudy::compositor {
 

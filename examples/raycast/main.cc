@@ -8,6 +8,7 @@
 #include "volume/file/volume_file.h"
 #include "volume/frame_counts.h"
 #include "volume/image.h"
+#include "volume/opening/open_volume.h"
 #include "volume/orbit_camera.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/request.h"

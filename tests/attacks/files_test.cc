@@ -15,7 +15,7 @@
 #include "tests/attacks/server.h"
 #include "tests/clients/command_test.h"
 #include "volume/file/file_error.h"
-#include "volume/file/volume_file.h"
+#include "volume/opening/open_volume.h"
 
 namespace attacks {
 namespace {

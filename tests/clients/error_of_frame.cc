@@ -16,8 +16,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/understudy/images/image.h"
-#include "volume/file/volume_file.h"
 #include "volume/matrix.h"
+#include "volume/opening/open_volume.h"
 #include "volume/reference/pixel_integral.h"
 #include "volume/request.h"
 

@@ -14,6 +14,7 @@
 #include "volume/cell_lattice.h"
 #include "volume/file/hierarchical_writer.h"
 #include "volume/file/volume_file.h"
+#include "volume/opening/open_volume.h"
 
 namespace understudy::compositor {
 namespace {

@@ -14,6 +14,7 @@
 #include "volume/file/file_error.h"
 #include "volume/file/texel_stream.h"
 #include "volume/file/volume_file.h"
+#include "volume/opening/open_volume.h"
 
 namespace {
 

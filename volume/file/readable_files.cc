@@ -46,8 +46,10 @@ class Folder {
   int number() const { return number_; }
   /// `path` from here on; nothing where it lies elsewhere.
   std::optional<std::string> rest_of(const std::string& path) const {
-    for (const std::string& name : {given_, real_})
+    for (const std::string& name : {given_, real_}) {
       if (path.starts_with(name) && path.size() > name.size()) return path.substr(name.size());
+      if (path == name || path + '/' == name) return ".";
+    }
     return {};
   }
 

@@ -11,14 +11,7 @@
 
 #include "volume/cell_lattice.h"
 #include "volume/file/file_error.h"
-#include "volume/file/hierarchical_volume.h"
-#include "volume/file/meta_image.h"
-#include "volume/file/nifti.h"
-#include "volume/file/nrrd.h"
-#include "volume/file/raw.h"
 #include "volume/file/series.h"
-#include "volume/file/synthetic.h"
-#include "volume/file/vti.h"
 
 namespace understudy::volume {
 
@@ -32,12 +25,6 @@ void swap_byte_order(std::span<std::byte> bytes, std::size_t scalar) {
 /// Of which time step a message is, in a file of several.
 std::string words_on_time_step(const FileDescription& description, const DenseScalars& scalars) {
   return description.time_steps > 1 ? fmt::format(" of time step {}", scalars.time_step) : "";
-}
-
-void check_time_step(int step, int steps, const std::string& path) {
-  if (step < 0 || step >= steps)
-    throw FileError(
-        fmt::format("{}: there is no time step {} in it; it holds {}, counted from 0", path, step, steps));
 }
 
 /// Of places whose time steps lie together, so much is read at once: of one place at least.
@@ -159,6 +146,12 @@ int checked_time_steps(std::int64_t steps, const std::string& path) {
   return int(steps);
 }
 
+void check_time_step(int step, int steps, const std::string& path) {
+  if (step < 0 || step >= steps)
+    throw FileError(
+        fmt::format("{}: there is no time step {} in it; it holds {}, counted from 0", path, step, steps));
+}
+
 double believable_spacing(double spacing) {
   constexpr double smallest = 1e-30, largest = 1e30;
   spacing = std::abs(spacing);
@@ -191,32 +184,6 @@ std::unique_ptr<VolumeFile> dense_volume(const FileDescription& description, Den
     if (present > bytes && scalars.nothing_follows) fail("", bytes, present, "");
   }
   return std::make_unique<DenseVolume>(description, std::move(scalars), bytes);
-}
-
-namespace {
-
-std::unique_ptr<VolumeFile> opened(const std::string& name, const FileHints& hints,
-                                   const ReadableFiles& files) {
-  const bool in_levels = !is_synthetic(name) && is_hierarchical(name, files);
-  if (in_levels) return open_level(name, hints.level, files);
-  if (hints.level != 0)
-    throw FileError(
-        fmt::format("{}: has no levels of detail; make some: understudy convert {} -o NAME.uvol", name, name));
-  if (is_synthetic(name)) return open_synthetic(name);
-  if (is_nifti(name)) return open_nifti(name, hints.time_step, files);
-  if (is_meta_image(name)) return open_meta_image(name, hints.time_step, files);
-  if (is_vti(name)) return open_vti(name, files);
-  if (is_nrrd(name, files)) return open_nrrd(name, hints.time_step, files);
-  return open_raw(name, hints, files);
-}
-
-}  // namespace
-
-std::unique_ptr<VolumeFile> open_volume(const std::string& name, const FileHints& hints,
-                                        const ReadableFiles& files) {
-  std::unique_ptr<VolumeFile> file = opened(name, hints, files);
-  check_time_step(hints.time_step, file->description().time_steps, name);
-  return file;
 }
 
 }  // namespace understudy::volume

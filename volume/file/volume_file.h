@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A volume in a file, of which any box can be read without the rest.
-//
-// NRRD and UVOL are known by their first bytes, MetaImage, NIfTI and VTI by their names (.mha .mhd, and .nii
-// .hdr .img .vti, each of these also with .gz), and a name that begins with "synthetic:" needs no file.
-// Everything else is raw scalars, whose size and type come from the caller or from the name
-// (engine.256x256x110, head_256x256x113_int16be.raw.gz).
+// A volume in a file, of which any box can be read without the rest, or in a folder of files with a slice each.
 #pragma once
 
 #include <array>
@@ -82,11 +77,6 @@ class VolumeFile {
   FileDescription description_;
 };
 
-/// Reads no more than the header, from `files` alone: also a second file that the first one names. Throws
-/// FileError.
-std::unique_ptr<VolumeFile> open_volume(const std::string& name, const FileHints& hints = {},
-                                        const ReadableFiles& files = {});
-
 /// Scalars that lie one after the other, x fastest, from `offset` of `bytes` on: those of all time steps.
 struct DenseScalars {
   std::unique_ptr<ByteSource> bytes;
@@ -110,6 +100,9 @@ std::uint64_t checked_bytes(const std::array<std::int64_t, 3>& size, ScalarType 
 
 /// Throws FileError, naming `path`, where a file cannot hold so many.
 int checked_time_steps(std::int64_t steps, const std::string& path);
+
+/// Throws FileError, naming `path`, unless `step` is one of `steps`, counted from 0.
+void check_time_step(int step, int steps, const std::string& path);
 
 /// What may stand between two scalars: anything but a positive finite number that can be squared becomes 1.
 double believable_spacing(double spacing);

@@ -28,6 +28,7 @@
 #include "compositor/rendered.h"
 #include "volume/cell_lattice.h"
 #include "volume/image.h"
+#include "volume/opening/open_volume.h"
 
 namespace understudy::launcher {
 namespace {

@@ -18,6 +18,7 @@
 #include "volume/hierarchy/level_request.h"
 #include "volume/matrix.h"
 #include "volume/opacity_correction.h"
+#include "volume/opening/open_volume.h"
 #include "volume/raycast/segment_scene.h"
 
 namespace understudy::launcher {
@@ -60,8 +61,9 @@ void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
   subcommand
       .add_option(
           "VOLUME", arguments.volumes,
-          "raw (size and type in its name: head_256x256x113_int16be.raw.gz), NRRD, NIfTI, MetaImage, VTI or "
-          "UVOL, or "
+          "raw (size and type in its name: head_256x256x113_int16be.raw.gz), NRRD, NIfTI, MetaImage, DICOM, "
+          "TIFF, "
+          "VTI or UVOL, a folder of DICOM or TIFF slices, or "
           "synthetic:XxYxZ[:u8|u16|f32[:shells|lobes|gyroid]]; several, a pattern ('step_*.vti'), or a file "
           "that holds several, are the time steps of a series")
       ->required();

@@ -19,6 +19,7 @@
 #include "volume/file/texel_stream.h"
 #include "volume/matrix.h"
 #include "volume/opacity_correction.h"
+#include "volume/opening/open_volume.h"
 #include "volume/raycast/pre_integration_lookup.h"
 #include "volume/raycast/segment_scene.h"
 #include "volume/reference/pixel_integral.h"

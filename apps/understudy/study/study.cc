@@ -21,7 +21,7 @@
 #include "apps/understudy/processes/installation.h"
 #include "apps/understudy/study/other_programs.h"
 #include "apps/understudy/study/results.h"
-#include "volume/file/volume_file.h"
+#include "volume/opening/open_volume.h"
 
 namespace understudy::launcher {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "tests/apps/render/render_command.h"
 #include "volume/file/hierarchical_writer.h"
-#include "volume/file/volume_file.h"
+#include "volume/opening/open_volume.h"
 
 namespace understudy::launcher {
 namespace {

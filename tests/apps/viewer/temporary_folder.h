@@ -34,6 +34,13 @@ class TemporaryFolder {
     return write(name, std::as_bytes(std::span(text)));
   }
 
+  std::vector<std::byte> read(const std::string& name) const {
+    std::ifstream in(file(name), std::ios::binary);
+    const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
+    return {bytes.begin(), bytes.end()};
+  }
+
  private:
   std::filesystem::path path_;
 };

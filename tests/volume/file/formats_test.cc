@@ -15,6 +15,7 @@
 #include "volume/file/file_error.h"
 #include "volume/file/raw.h"
 #include "volume/kd_tree.h"
+#include "volume/opening/open_volume.h"
 #include "volume/texture_space.h"
 
 namespace understudy::volume::testing {

@@ -17,6 +17,7 @@
 #include "volume/file/file_error.h"
 #include "volume/file/hierarchical_volume.h"
 #include "volume/file/hierarchical_writer.h"
+#include "volume/opening/open_volume.h"
 
 namespace understudy::volume::testing {
 namespace {

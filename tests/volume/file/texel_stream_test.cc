@@ -11,6 +11,7 @@
 
 #include "tests/volume/file/volume_files.h"
 #include "volume/file/file_error.h"
+#include "volume/opening/open_volume.h"
 #include "volume/texel_box.h"
 #include "volume/texel_type.h"
 

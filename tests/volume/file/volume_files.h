@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "tests/apps/viewer/temporary_folder.h"
+#include "volume/file/file_error.h"
 #include "volume/file/volume_file.h"
+#include "volume/opening/open_volume.h"
 #include "volume/texel_box.h"
 
 namespace understudy::volume::testing {
@@ -77,6 +79,12 @@ inline Bytes random_scalars(const std::array<int, 3>& size, ScalarType type, uns
   return bytes;
 }
 
+inline FileHints at_step(int time_step) {
+  FileHints hints;
+  hints.time_step = time_step;
+  return hints;
+}
+
 inline Bytes read_box(VolumeFile& file, const TexelBox& box) {
   Bytes bytes(texels_in(box) * bytes_per_scalar(file.description().type));
   file.read(box, bytes);
@@ -85,6 +93,31 @@ inline Bytes read_box(VolumeFile& file, const TexelBox& box) {
 
 inline TexelBox whole(const VolumeFile& file) {
   return {{0, 0, 0}, file.description().size};
+}
+
+/// With some bytes changed, and cut at times.
+inline Bytes damaged(Bytes bytes, std::mt19937& random) {
+  const int changes = 1 + int(random() % 3);
+  for (int k = 0; k < changes; ++k) bytes[random() % bytes.size()] = std::byte(random() & 0xFFU);
+  if (random() % 8 == 0) bytes.resize(random() % bytes.size());
+  return bytes;
+}
+
+/// What is wrong; empty when nothing is. Everything is read, slice by slice.
+inline std::string trouble_with(const std::string& name, const FileHints& hints = {},
+                                const ReadableFiles& files = {}) {
+  try {
+    const auto file = open_volume(name, hints, files);
+    for (int z = 0; z < file->description().size[2]; ++z) {
+      TexelBox box = whole(*file);
+      box.low[2] = z;
+      box.high[2] = z + 1;
+      read_box(*file, box);
+    }
+    return {};
+  } catch (const FileError& error) {
+    return error.what();
+  }
 }
 
 inline TexelBox random_box(const std::array<int, 3>& size, std::mt19937& random) {

@@ -14,6 +14,7 @@
 #include "volume/frame_counts.h"
 #include "volume/glsl/glsl_ray_caster.h"
 #include "volume/image.h"
+#include "volume/opening/open_volume.h"
 #include "volume/orbit_camera.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/raycast/segment_scene.h"

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// DICOM series: slices are put where they lie in the patient, and mean what the scanner measured.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/volume/file/dicom_files.h"
+#include "volume/file/file_error.h"
+#include "volume/file/readable_files.h"
+#include "volume/opening/open_volume.h"
+
+namespace understudy::volume::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr std::array<int, 3> series_size{13, 7, 9};
+
+Bytes slice_of(const Bytes& scalars, int z) {
+  const std::size_t bytes = scalars.size() / std::size_t(series_size[2]);
+  const auto first = scalars.begin() + std::ptrdiff_t(bytes) * z;
+  return {first, first + std::ptrdiff_t(bytes)};
+}
+
+/// Slice z of `scalars`, 2.5 mm behind the one before it along `normal`.
+DicomFile slice_file(const Bytes& scalars, int z, const Vec3& normal = {0, 0, 1}) {
+  DicomFile file;
+  file.instance = series_size[2] - z;  // numbers may go the other way
+  for (std::size_t k = 0; k < 3; ++k) file.position[k] = 100 + 2.5 * z * normal[k];
+  file.pixels = slice_of(scalars, z);
+  return file;
+}
+
+void write_series(const TemporaryFolder& folder, const Bytes& scalars, ScalarType type) {
+  for (int z = 0; z < series_size[2]; ++z) {
+    DicomFile file = slice_file(scalars, z);
+    file.type = type;
+    folder.write("IM" + std::to_string((z * 5) % series_size[2]), dicom_bytes(file));
+  }
+}
+
+TEST(DicomSeries, SlicesLieInTheOrderOfTheirPositions) {
+  for (const ScalarType type : {ScalarType::u8, ScalarType::i8, ScalarType::u16, ScalarType::i16}) {
+    const TemporaryFolder folder;
+    const Bytes scalars = random_scalars(series_size, type, 5);
+    write_series(folder, scalars, type);
+    folder.write("notes.txt", "not DICOM");
+    for (const std::string& name : {folder.file(""), folder.file("IM0")}) {
+      const auto file = open_volume(name);
+      ASSERT_EQ(file->description().size, series_size);
+      EXPECT_EQ(file->description().type, type);
+      EXPECT_THAT(file->description().spacing,
+                  ElementsAre(DoubleNear(0.25, 1e-9), DoubleNear(0.5, 1e-9), DoubleNear(2.5, 1e-9)));
+      EXPECT_EQ(read_box(*file, whole(*file)), scalars);
+      const TexelBox box{{2, 1, 3}, {11, 6, 8}};
+      Bytes expected(texels_in(box) * bytes_per_scalar(type));
+      copy_texels(box, bytes_per_scalar(type), whole(*file), scalars, box, expected);
+      EXPECT_EQ(read_box(*file, box), expected);
+      EXPECT_GT(file->bytes_read(), scalars.size());
+    }
+  }
+}
+
+TEST(DicomSeries, EveryCompressionOfScannersAndArchives) {
+  for (const char* const option : {"--implicit", "--deflated", "--rle", "--jpeg", "--jpegls", "--j2k"}) {
+    SCOPED_TRACE(option);
+    const TemporaryFolder folder, packed;
+    const Bytes scalars = random_scalars(series_size, ScalarType::u16, 6);
+    for (int z = 0; z < series_size[2]; ++z) {
+      DicomFile file = slice_file(scalars, z);
+      file.type = ScalarType::u16;
+      const std::string plain = folder.write(std::to_string(z) + ".dcm", dicom_bytes(file));
+      recompress(plain, packed.file(std::to_string(z) + ".dcm"), option);
+    }
+    const auto file = open_volume(packed.file(""));
+    ASSERT_EQ(file->description().size, series_size);
+    EXPECT_EQ(read_box(*file, whole(*file)), scalars);
+  }
+}
+
+/// 12 bits with a sign, in 16: what lies above them is no part of the number.
+TEST(DicomSeries, BitsBeyondThoseStoredAreNotRead) {
+  const TemporaryFolder folder;
+  DicomFile file;
+  file.size = {4, 1};
+  file.stored_bits = 12;
+  file.pixels = bytes_of(std::vector<std::uint16_t>{0x0001, 0x07FF, 0x0800, 0xFFFF});
+  folder.write("a.dcm", dicom_bytes(file));
+  const auto volume = open_volume(folder.file("a.dcm"));
+  EXPECT_EQ(read_box(*volume, whole(*volume)), bytes_of(std::vector<std::int16_t>{1, 2047, -2048, -1}));
+}
+
+TEST(DicomSeries, ValuesAreThoseOfTheModality) {
+  const TemporaryFolder same, different;
+  const Bytes scalars = random_scalars(series_size, ScalarType::i16, 7);
+  for (int z = 0; z < series_size[2]; ++z) {
+    DicomFile file = slice_file(scalars, z);
+    file.slope = 2;
+    file.intercept = -1024;
+    same.write(std::to_string(z), dicom_bytes(file));
+    file.slope = 1 + z;  // as PET has it
+    different.write(std::to_string(z), dicom_bytes(file));
+  }
+  const auto hounsfield = open_volume(same.file(""));
+  EXPECT_EQ(hounsfield->description().type, ScalarType::i16);
+  EXPECT_EQ(hounsfield->description().scale, 2);
+  EXPECT_EQ(hounsfield->description().offset, -1024);
+  const auto values = open_volume(different.file(""));
+  ASSERT_EQ(values->description().type, ScalarType::f32);
+  const Bytes read = read_box(*values, whole(*values));
+  for (std::size_t i = 0; i < scalars.size() / 2; ++i) {
+    std::int16_t stored = 0;
+    float value = 0;
+    std::memcpy(&stored, scalars.data() + 2 * i, 2);
+    std::memcpy(&value, read.data() + 4 * i, 4);
+    const std::size_t z = i / std::size_t(series_size[0] * series_size[1]);
+    ASSERT_EQ(value, float((1.0 + double(z)) * stored - 1024));
+  }
+}
+
+TEST(DicomSeries, SeveralImagesOfAPlaceAreTimeSteps) {
+  const TemporaryFolder folder;
+  const std::array<Bytes, 3> steps{random_scalars(series_size, ScalarType::i16, 1),
+                                   random_scalars(series_size, ScalarType::i16, 2),
+                                   random_scalars(series_size, ScalarType::i16, 3)};
+  for (int z = 0; z < series_size[2]; ++z)
+    for (int t = 0; t < 3; ++t) {
+      DicomFile file = slice_file(steps[std::size_t(t)], z);
+      file.position[2] += 0.001 * ((z + t) % 2);  // as scanners round
+      file.instance = 100 * t + z;
+      folder.write(std::to_string(7 * z + t), dicom_bytes(file));
+    }
+  for (int t = 0; t < 3; ++t) {
+    const auto file = open_volume(folder.file(""), at_step(t));
+    EXPECT_EQ(file->description().time_steps, 3);
+    EXPECT_EQ(read_box(*file, whole(*file)), steps[std::size_t(t)]);
+  }
+  EXPECT_THAT(trouble_with(folder.file(""), at_step(3)),
+              HasSubstr("there is no time step 3 in it; it holds 3"));
+  std::filesystem::remove(folder.file("8"));
+  EXPECT_THAT(trouble_with(folder.file("")), HasSubstr("2 images lie where it lies, 3 elsewhere"));
+}
+
+TEST(DicomSeries, FramesOfOneFileLieWhereTheyLie) {
+  const TemporaryFolder folder;
+  const Bytes scalars = random_scalars(series_size, ScalarType::i16, 8);
+  DicomFile file;
+  file.slope = 3;
+  file.intercept = -7;
+  file.orientation = {0, 1, 0, 0, 0, 1};  // slices follow each other along x
+  for (int i = 0; i < series_size[2]; ++i) {
+    const int z = (i * 4) % series_size[2];
+    file.frame_positions.push_back({2.5 * z, 4, 5});
+    file.pixels = joined(file.pixels, slice_of(scalars, z));
+  }
+  folder.write("enhanced.dcm", dicom_bytes(file));
+  const auto volume = open_volume(folder.file("enhanced.dcm"));
+  ASSERT_EQ(volume->description().size, series_size);
+  EXPECT_NEAR(volume->description().spacing[2], 2.5, 1e-9);
+  EXPECT_EQ(volume->description().scale, 3);
+  EXPECT_EQ(read_box(*volume, whole(*volume)), scalars);
+  file.pixels.resize(file.pixels.size() - 40);
+  EXPECT_THAT(trouble_with(folder.write("enhanced.dcm", dicom_bytes(file))),
+              HasSubstr("its pixels cannot be decoded"));
+}
+
+TEST(DicomSeries, FramesOfOneFileInEveryCompression) {
+  const Bytes scalars = random_scalars(series_size, ScalarType::i16, 8);
+  DicomFile file;
+  file.stored_bits = 12;  // with a sign that reaches into the bits above
+  Bytes expected;
+  for (std::size_t i = 0; i < scalars.size(); i += 2) {
+    std::int16_t value = 0;
+    std::memcpy(&value, scalars.data() + i, 2);
+    value = std::int16_t(value >> 4);
+    expected = joined(expected, bytes_of(std::vector{value}));
+  }
+  file.pixels = expected;
+  for (int z = 0; z < series_size[2]; ++z) file.frame_positions.push_back({0, 0, 2.5 * z});
+  const TemporaryFolder folder;
+  const std::string plain = folder.write("plain.dcm", dicom_bytes(file));
+  for (const char* const option : {"--implicit", "--rle", "--jpeg", "--jpegls", "--j2k"}) {
+    SCOPED_TRACE(option);
+    const TemporaryFolder packed;
+    recompress(plain, packed.file("a.dcm"), option);
+    const auto volume = open_volume(packed.file("a.dcm"));
+    EXPECT_EQ(read_box(*volume, whole(*volume)), expected);
+    EXPECT_EQ(read_box(*volume, {{2, 1, 4}, {3, 2, 5}}).size(), 2);
+  }
+}
+
+TEST(DicomSeries, OneOfSeveralIsChosenByAFileOfIt) {
+  const TemporaryFolder folder;
+  const Bytes head = random_scalars(series_size, ScalarType::i16, 1),
+              chest = random_scalars(series_size, ScalarType::i16, 2);
+  for (int z = 0; z < series_size[2]; ++z) {
+    folder.write("head" + std::to_string(z), dicom_bytes(slice_file(head, z)));
+    DicomFile other = slice_file(chest, z, {0, 0, -1});
+    other.series += ".2";
+    folder.write("chest" + std::to_string(z), dicom_bytes(other));
+  }
+  EXPECT_THAT(
+      trouble_with(folder.file("")),
+      AllOf(HasSubstr("images of 2 series lie in this folder; give a file of the one that is meant"),
+            HasSubstr("series 4 'head', 9 files: " + folder.file("chest0")), HasSubstr(folder.file("head0"))));
+  const auto file = open_volume(folder.file("head4"));
+  EXPECT_EQ(read_box(*file, whole(*file)), head);
+}
+
+TEST(DicomSeries, WhatIsNoVolumeSaysWhy) {
+  const Bytes scalars = random_scalars(series_size, ScalarType::i16, 9);
+  const auto with_last = [&](const DicomFile& last) {
+    const TemporaryFolder folder;
+    for (int z = 0; z + 1 < series_size[2]; ++z)
+      folder.write(std::to_string(z), dicom_bytes(slice_file(scalars, z)));
+    folder.write("8", dicom_bytes(last));
+    return trouble_with(folder.file(""));
+  };
+  DicomFile last = slice_file(scalars, 8);
+  EXPECT_EQ(with_last(last), "");
+  last.position[2] += 2.5;
+  EXPECT_THAT(with_last(last), HasSubstr("it lies 5 mm behind 7, where other slices lie 2.5 mm apart"));
+  last = slice_file(scalars, 8);
+  last.size = {7, 13};
+  EXPECT_THAT(with_last(last), HasSubstr("8: DICOM: it has 7 x 13 pixels of i16, where 0 has 13 x 7"));
+  last = slice_file(scalars, 8);
+  last.orientation = {0, 1, 0, 0, 0, 1};
+  EXPECT_THAT(with_last(last), HasSubstr("it lies in another plane than 0"));
+  last = slice_file(scalars, 8);
+  last.meaning = "RGB";
+  last.samples = 3;
+  EXPECT_THAT(with_last(last), HasSubstr("its pixels are colours (RGB)"));
+  last = slice_file(scalars, 8);
+  last.pixels.resize(100);
+  EXPECT_THAT(with_last(last), HasSubstr("8: DICOM: its pixels cannot be decoded"));
+  const TemporaryFolder folder;
+  std::string cut = dicom_bytes(slice_file(scalars, 8));
+  cut.resize(cut.size() - 10);
+  EXPECT_THAT(trouble_with(folder.write("cut.dcm", cut)), HasSubstr("its pixels cannot be decoded"));
+}
+
+/// Bytes changed at random: an answer, or an error.
+TEST(DicomSeries, ChangedBytesNeverDoMoreHarmThanAnError) {
+  const TemporaryFolder folder;
+  DicomFile file;
+  file.type = ScalarType::u16;
+  file.pixels = slice_of(random_scalars(series_size, ScalarType::u16, 1), 0);
+  const std::string plain = folder.write("plain", dicom_bytes(file));
+  std::mt19937 random(20772);
+  int survived = 0, refused = 0;
+  for (const char* const option : {"--explicit", "--rle", "--jpeg", "--jpegls", "--j2k"}) {
+    recompress(plain, folder.file("packed"), option);
+    const Bytes good = folder.read("packed");
+    for (int i = 0; i < 200; ++i) {
+      const TemporaryFolder alone;
+      const std::string trouble = trouble_with(alone.write("m.dcm", damaged(good, random)));
+      ++(trouble.empty() ? survived : refused);
+      if (!trouble.empty()) {
+        EXPECT_THAT(trouble, HasSubstr(std::filesystem::path(alone.file("")).parent_path().string()));
+      }
+    }
+  }
+  std::printf("%d were read, %d refused\n", survived, refused);
+  EXPECT_GT(refused, 100);
+  EXPECT_GT(survived, 100);
+}
+
+TEST(DicomSeries, FoldersAreReadOnlyWhereClientsMay) {
+  const TemporaryFolder allowed, other;
+  const Bytes scalars = random_scalars(series_size, ScalarType::i16, 9);
+  write_series(allowed, scalars, ScalarType::i16);
+  write_series(other, scalars, ScalarType::i16);
+  const std::string parent = std::filesystem::path(allowed.file("")).parent_path();
+  const ReadableFiles files(std::span(&parent, 1));
+  EXPECT_EQ(trouble_with(parent, {}, files), "");
+  EXPECT_EQ(trouble_with(parent + "/", {}, files), "");
+  EXPECT_EQ(trouble_with(parent + "/IM1", {}, files), "");
+  EXPECT_THAT(trouble_with(other.file(""), {}, files), HasSubstr("lies in none of the folders"));
+  std::filesystem::create_directory_symlink(other.file(""), allowed.file("link"));
+  EXPECT_THAT(trouble_with(allowed.file("link"), {}, files), HasSubstr("lies in none of the folders"));
+}
+
+}  // namespace
+}  // namespace understudy::volume::testing

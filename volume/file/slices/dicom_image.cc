@@ -1,0 +1,421 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volume/file/slices/dicom_image.h"
+
+#include <dcmtk/config/osconfig.h>
+// Before the rest of DCMTK.
+#include <dcmtk/dcmdata/dcfcache.h>
+#include <dcmtk/dcmdata/dcpixseq.h>
+#include <dcmtk/dcmdata/dcpxitem.h>
+#include <dcmtk/dcmdata/dctk.h>
+#include <dcmtk/dcmjpeg/djdecode.h>
+#include <dcmtk/dcmjpls/djdecode.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <new>
+#include <stdexcept>
+
+#include "volume/file/byte_source.h"
+#include "volume/file/file_error.h"
+#include "volume/file/header_fields.h"
+#include "volume/file/slices/dicom_rle.h"
+#include "volume/file/slices/jpeg2000.h"
+#include "volume/file/slices/jpeg_header.h"
+#include "volume/file/volume_file.h"
+
+namespace understudy::volume {
+
+namespace {
+
+constexpr std::uint64_t preamble_bytes = 128;
+constexpr int most_frames = 1 << 20;
+
+/// DCMTK says what went wrong on the standard error stream, too, where nobody asked for it.
+void prepare_dcmtk() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+    DJDecoderRegistration::registerCodecs();
+    DJLSDecoderRegistration::registerCodecs();
+  });
+}
+
+/// What is thrown of a damaged file, as a FileError.
+template <typename Function>
+auto with_dcmtk(const std::string& path, const Function& function) {
+  prepare_dcmtk();
+  try {
+    return function();
+  } catch (const FileError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    fail_dicom(path, fmt::format("it is damaged ({}); get the file again", error.what()));
+  }
+}
+
+/// An open file under a name that DCMTK can open: whoever may read it has been checked.
+class OpenFile {
+ public:
+  OpenFile(const std::string& path, const ReadableFiles& files)
+      : number_(files.open(path)), name_(fmt::format("/proc/self/fd/{}", number_)) {}
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() { ::close(number_); }
+
+  OFFilename name() const { return OFFilename(name_.c_str()); }
+  std::uint64_t bytes() const {
+    struct stat about {};
+    return ::fstat(number_, &about) == 0 ? std::uint64_t(about.st_size) : 0;
+  }
+
+ private:
+  int number_;
+  std::string name_;
+};
+
+using Numbers = std::vector<double>;
+
+/// Those before the first that is none.
+Numbers numbers_of(DcmItem* item, const DcmTagKey& tag, std::size_t most) {
+  Numbers found;
+  Float64 number = 0;
+  while (item != nullptr && found.size() < most &&
+         item->findAndGetFloat64(tag, number, static_cast<unsigned long>(found.size())).good() &&
+         std::isfinite(number))
+    found.push_back(number);
+  return found;
+}
+
+std::string text_of(DcmItem& item, const DcmTagKey& tag) {
+  OFString text;
+  return item.findAndGetOFString(tag, text).good() ? trimmed(text.c_str()) : std::string();
+}
+
+int integer_of(DcmItem& item, const DcmTagKey& tag, int otherwise) {
+  Sint32 number = 0;
+  return item.findAndGetSint32(tag, number).good() ? int(number) : otherwise;
+}
+
+unsigned short_of(DcmItem& item, const DcmTagKey& tag, unsigned otherwise) {
+  Uint16 number = 0;
+  return item.findAndGetUint16(tag, number).good() ? number : otherwise;
+}
+
+DcmItem* item_of(DcmItem* item, const DcmTagKey& sequence, long number = 0) {
+  DcmItem* found = nullptr;
+  return item != nullptr && item->findAndGetSequenceItem(sequence, found, number).good() ? found : nullptr;
+}
+
+/// How the bits of a pixel make a number.
+struct PixelBits {
+  unsigned allocated = 0;
+  unsigned stored = 0;
+  unsigned high = 0;
+  bool with_sign = false;
+
+  /// Whether they are the number itself.
+  bool fill_all() const { return stored == allocated; }
+};
+
+PixelBits bits_of(DcmItem& image) {
+  PixelBits bits;
+  bits.allocated = short_of(image, DCM_BitsAllocated, 0);
+  bits.stored = short_of(image, DCM_BitsStored, bits.allocated);
+  bits.high = short_of(image, DCM_HighBit, bits.stored - 1);
+  bits.with_sign = short_of(image, DCM_PixelRepresentation, 0) == 1;
+  return bits;
+}
+
+std::optional<ScalarType> scalar_type(const PixelBits& bits) {
+  const bool possible = bits.stored >= 1 && bits.high < bits.allocated && bits.high + 1 >= bits.stored;
+  if (!possible) return std::nullopt;
+  switch (bits.allocated) {
+    case 8:
+      return bits.with_sign ? ScalarType::i8 : ScalarType::u8;
+    case 16:
+      return bits.with_sign ? ScalarType::i16 : ScalarType::u16;
+    case 32:
+      return bits.with_sign ? ScalarType::i32 : ScalarType::u32;
+    default:
+      return std::nullopt;
+  }
+}
+
+ScalarType checked_type(DcmItem& image, const std::string& path) {
+  const std::string meaning = text_of(image, DCM_PhotometricInterpretation);
+  if (short_of(image, DCM_SamplesPerPixel, 1) != 1 || (meaning != "MONOCHROME1" && meaning != "MONOCHROME2"))
+    fail_dicom(path,
+               fmt::format("its pixels are colours ({}), not scalars; extract one component first", meaning));
+  const PixelBits bits = bits_of(image);
+  const std::optional<ScalarType> type = scalar_type(bits);
+  if (!type)
+    fail_dicom(path, fmt::format("pixels of {} bits in {} are not read; write them with 8, 16 or 32 bits first",
+                                 bits.stored, bits.allocated));
+  return *type;
+}
+
+/// The elements of an image with frames: `macro` of one frame or of all, or the image itself.
+class Frames {
+ public:
+  explicit Frames(DcmItem& image)
+      : image_(image), shared_(item_of(&image, DCM_SharedFunctionalGroupsSequence)) {}
+
+  Numbers numbers(int frame, const DcmTagKey& macro, const DcmTagKey& tag, std::size_t most) const {
+    DcmItem* const own = item_of(item_of(&image_, DCM_PerFrameFunctionalGroupsSequence, frame), macro);
+    for (DcmItem* const item : {own, item_of(shared_, macro), &image_})
+      if (Numbers found = numbers_of(item, tag, most); !found.empty()) return found;
+    return {};
+  }
+
+ private:
+  DcmItem& image_;
+  DcmItem* shared_;
+};
+
+std::optional<DicomPlane> plane_of(const Numbers& position, const Numbers& ways) {
+  if (position.size() != 3 || ways.size() != 6) return std::nullopt;
+  const Vec3 normal = cross({ways[0], ways[1], ways[2]}, {ways[3], ways[4], ways[5]});
+  const double size = length(normal);
+  constexpr double shortest = 0.5;  // 1 for rows and columns at right angles
+  if (!(size > shortest)) return std::nullopt;
+  return DicomPlane{{position[0], position[1], position[2]}, scale(normal, 1 / size)};
+}
+
+std::vector<DicomFrame> frames_of(DcmItem& image, const std::string& path) {
+  const int count = integer_of(image, DCM_NumberOfFrames, 1);
+  if (count < 1 || count > most_frames)
+    fail_dicom(path, fmt::format("its header speaks of {} frames; get the file again", count));
+  const Frames frames(image);
+  const Numbers dose = numbers_of(&image, DCM_DoseGridScaling, 1);
+  std::vector<DicomFrame> found(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    DicomFrame& frame = found[std::size_t(i)];
+    const bool is_told = count == 1 || item_of(&image, DCM_PerFrameFunctionalGroupsSequence, i) != nullptr;
+    if (is_told)
+      frame.plane = plane_of(frames.numbers(i, DCM_PlanePositionSequence, DCM_ImagePositionPatient, 3),
+                             frames.numbers(i, DCM_PlaneOrientationSequence, DCM_ImageOrientationPatient, 6));
+    const Numbers slope = frames.numbers(i, DCM_PixelValueTransformationSequence, DCM_RescaleSlope, 1);
+    const Numbers intercept = frames.numbers(i, DCM_PixelValueTransformationSequence, DCM_RescaleIntercept, 1);
+    if (!slope.empty() && !intercept.empty() && slope[0] != 0) {
+      frame.slope = slope[0];
+      frame.intercept = intercept[0];
+    } else if (!dose.empty() && dose[0] != 0) {
+      frame.slope = dose[0];
+    }
+  }
+  return found;
+}
+
+Vec3 spacing_of(DcmItem& image) {
+  const Frames frames(image);
+  const auto first = [&](const DcmTagKey& tag, std::size_t most) {
+    return frames.numbers(0, DCM_PixelMeasuresSequence, tag, most);
+  };
+  Numbers pixels = first(DCM_PixelSpacing, 2);
+  if (pixels.size() != 2) pixels = numbers_of(&image, DCM_ImagerPixelSpacing, 2);
+  if (pixels.size() != 2) pixels = {1, 1};
+  Numbers slices = first(DCM_SpacingBetweenSlices, 1);
+  if (slices.empty()) slices = first(DCM_SliceThickness, 1);
+  if (const Numbers offsets = numbers_of(&image, DCM_GridFrameOffsetVector, 2); offsets.size() == 2)
+    slices = {offsets[1] - offsets[0]};
+  // Between rows first, which is along y.
+  return {believable_spacing(pixels[1]), believable_spacing(pixels[0]),
+          believable_spacing(slices.empty() ? 1 : slices[0])};
+}
+
+DicomHeader header_of(DcmItem& image, const std::string& path) {
+  DicomHeader header;
+  header.path = path;
+  header.series = text_of(image, DCM_SeriesInstanceUID);
+  header.description =
+      fmt::format("series {} '{}'", text_of(image, DCM_SeriesNumber), text_of(image, DCM_SeriesDescription));
+  header.instance = integer_of(image, DCM_InstanceNumber, 0);
+  header.size = {int(short_of(image, DCM_Columns, 0)), int(short_of(image, DCM_Rows, 0))};
+  header.type = checked_type(image, path);
+  header.frames = frames_of(image, path);
+  checked_bytes({header.size[0], header.size[1], 1}, header.type, path);
+  header.spacing = spacing_of(image);
+  return header;
+}
+
+/// Makes numbers of bits, in place.
+template <typename Unsigned>
+void extract(const PixelBits& bits, std::span<std::byte> pixels) {
+  constexpr unsigned width = std::numeric_limits<Unsigned>::digits;
+  const unsigned above = bits.allocated - 1 - bits.high, unused = width - bits.stored;
+  for (std::size_t at = 0; at + sizeof(Unsigned) <= pixels.size(); at += sizeof(Unsigned)) {
+    Unsigned pixel;
+    std::memcpy(&pixel, pixels.data() + at, sizeof pixel);
+    pixel = Unsigned(pixel << above);  // the highest bit that counts is the highest one now
+    if (bits.with_sign)
+      pixel = Unsigned(std::make_signed_t<Unsigned>(pixel) >> unused);
+    else
+      pixel = Unsigned(pixel >> unused);
+    std::memcpy(pixels.data() + at, &pixel, sizeof pixel);
+  }
+}
+
+}  // namespace
+
+void fail_dicom(const std::string& path, const std::string& what) {
+  throw FileError(fmt::format("{}: DICOM: {}", path, what));
+}
+
+bool is_dicom(const std::string& path, const ReadableFiles& files) {
+  std::array<char, 4> mark{};
+  const std::unique_ptr<ByteSource> file = open_file(path, files);
+  const std::size_t got = file->read(preamble_bytes, std::as_writable_bytes(std::span(mark)));
+  return got == mark.size() && std::string_view(mark.data(), mark.size()) == "DICM";
+}
+
+std::optional<DicomHeader> dicom_header(const std::string& path, const ReadableFiles& files) {
+  return with_dcmtk(path, [&]() -> std::optional<DicomHeader> {
+    const OpenFile open(path, files);
+    DcmFileFormat file;
+    const OFCondition read = file.loadFileUntilTag(open.name(), EXS_Unknown, EGL_noChange, DCM_MaxReadLength,
+                                                   ERM_autoDetect, DCM_PixelData);
+    if (read.bad())
+      fail_dicom(path, fmt::format("its header is damaged ({}); get the file again", read.text()));
+    DcmItem& image = *file.getDataset();
+    const bool is_image =
+        image.tagExists(DCM_Rows) && image.tagExists(DCM_Columns) && image.tagExists(DCM_BitsAllocated);
+    if (!is_image) return std::nullopt;
+    DicomHeader header = header_of(image, path);
+    header.file_bytes = open.bytes();
+    return header;
+  });
+}
+
+class DicomFrames::Decoder {
+ public:
+  Decoder(const DicomHeader& header, const ReadableFiles& files) : header_(header), open_(header.path, files) {
+    // Pixels stay in the file until they are asked for.
+    const OFCondition read = file_.loadFile(open_.name());
+    if (read.bad()) fail(read.text());
+    bits_ = bits_of(*file_.getDataset());
+    DcmElement* pixels = nullptr;
+    file_.getDataset()->findAndGetElement(DCM_PixelData, pixels);
+    pixels_ = dynamic_cast<DcmPixelData*>(pixels);
+    if (pixels_ == nullptr) fail("there are none");
+  }
+
+  const std::string& path() const { return header_.path; }
+
+  void read(int frame, std::span<std::byte> scalars) {
+    try {
+      decode(frame, scalars);
+    } catch (const std::runtime_error& error) {
+      fail(error.what());
+    }
+    if (bits_.fill_all()) return;
+    if (bits_.allocated == 8) extract<std::uint8_t>(bits_, scalars);
+    if (bits_.allocated == 16) extract<std::uint16_t>(bits_, scalars);
+    if (bits_.allocated == 32) extract<std::uint32_t>(bits_, scalars);
+  }
+
+ private:
+  // These throw std::runtime_error that says why.
+
+  void decode(int frame, std::span<std::byte> scalars) {
+    const E_TransferSyntax syntax = file_.getDataset()->getOriginalXfer();
+    if (syntax == EXS_RLELossless)
+      return decode_dicom_rle(fragments_of(frame), bytes_per_scalar(header_.type), scalars);
+    if (syntax == EXS_JPEG2000LosslessOnly || syntax == EXS_JPEG2000) return read_jpeg2000(frame, scalars);
+    const bool is_jpeg = syntax >= EXS_JPEGProcess1 && syntax <= EXS_JPEGProcess14SV1;
+    if (is_jpeg && !leads_to_a_jpeg_frame(fragments_of(frame)))
+      throw std::runtime_error("its JPEG header is damaged");
+    read_by_dcmtk(frame, scalars);
+  }
+
+  void read_by_dcmtk(int frame, std::span<std::byte> scalars) {
+    buffer_.resize(scalars.size() + scalars.size() % 2);  // room is wanted for an even number of bytes
+    if (frame != next_frame_) fragment_ = 0;
+    next_frame_ = frame + 1;
+    OFString colours;
+    const OFCondition done = pixels_->getUncompressedFrame(
+        file_.getDataset(), Uint32(frame), fragment_, buffer_.data(), Uint32(buffer_.size()), colours, &cache_);
+    if (done.bad()) throw std::runtime_error(done.text());
+    std::copy_n(buffer_.begin(), scalars.size(), scalars.begin());
+    // Words of 16 bits were put into native order, and two of them are a pixel.
+    if (bits_.allocated == 32 && file_.getDataset()->getOriginalXfer() == EXS_BigEndianExplicit)
+      for (std::size_t at = 0; at + 4 <= scalars.size(); at += 4)
+        std::swap_ranges(scalars.begin() + std::ptrdiff_t(at), scalars.begin() + std::ptrdiff_t(at + 2),
+                         scalars.begin() + std::ptrdiff_t(at + 2));
+  }
+
+  void read_jpeg2000(int frame, std::span<std::byte> scalars) {
+    const std::vector<std::int32_t> samples = decode_jpeg2000(fragments_of(frame), header_.size);
+    const std::size_t scalar = bytes_per_scalar(header_.type);
+    // The lowest bytes; those above the stored bits are made from them.
+    static_assert(std::endian::native == std::endian::little);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      std::memcpy(scalars.data() + i * scalar, &samples[i], scalar);
+  }
+
+  /// The compressed bytes of a frame, which is one fragment, or all of them are of the only frame.
+  std::vector<std::byte> fragments_of(int frame) {
+    DcmPixelSequence* sequence = nullptr;
+    const E_TransferSyntax syntax = file_.getDataset()->getOriginalXfer();
+    const OFCondition found = pixels_->getEncapsulatedRepresentation(syntax, nullptr, sequence);
+    const std::size_t frames = header_.frames.size();
+    // The first item is a table of where frames begin.
+    const std::size_t fragments = found.good() && sequence->card() > 0 ? sequence->card() - 1 : 0;
+    if (fragments < frames || (fragments != frames && frames != 1))
+      throw std::runtime_error("its frames lie in several fragments");
+    std::vector<std::byte> bytes;
+    const std::size_t first = std::size_t(frame), end = frames == 1 ? fragments : first + 1;
+    for (std::size_t i = first; i < end; ++i) {
+      DcmPixelItem* item = nullptr;
+      Uint8* part = nullptr;
+      if (sequence->getItem(item, static_cast<unsigned long>(i + 1)).bad() || item->getUint8Array(part).bad() ||
+          part == nullptr)
+        throw std::runtime_error("a fragment cannot be read");
+      const auto* const begin = reinterpret_cast<const std::byte*>(part);
+      bytes.insert(bytes.end(), begin, begin + item->getLength());
+    }
+    return bytes;
+  }
+
+  [[noreturn]] void fail(const std::string& why) const {
+    fail_dicom(path(),
+               fmt::format("its pixels cannot be decoded ({}): they are damaged, or compressed in a way that "
+                           "is not read; get the file again, or write it without compression "
+                           "(gdcmconv --raw)",
+                           why));
+  }
+
+  DicomHeader header_;
+  OpenFile open_;
+  DcmFileFormat file_;
+  DcmFileCache cache_;
+  DcmPixelData* pixels_ = nullptr;
+  PixelBits bits_;
+  Uint32 fragment_ = 0;  ///< of compressed pixels: where `next_frame_` begins; 0: it is looked for
+  int next_frame_ = 0;
+  std::vector<std::byte> buffer_;
+};
+
+DicomFrames::DicomFrames(const DicomHeader& header, const ReadableFiles& files)
+    : decoder_(with_dcmtk(header.path, [&] { return std::make_unique<Decoder>(header, files); })) {}
+
+DicomFrames::~DicomFrames() = default;
+
+const std::string& DicomFrames::path() const {
+  return decoder_->path();
+}
+
+void DicomFrames::read(int frame, std::span<std::byte> scalars) {
+  with_dcmtk(path(), [&] { decoder_->read(frame, scalars); });
+}
+
+}  // namespace understudy::volume

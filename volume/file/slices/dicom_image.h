@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// One DICOM file: what its header says, and its pixels. Read by DCMTK: uncompressed, deflated, RLE, JPEG
+// (lossless, baseline, extended), JPEG-LS; and JPEG 2000 by OpenJPEG. dicom.nema.org/medical/dicom/current:
+// parts 3 (modules) and 5 (encodings).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "volume/file/readable_files.h"
+#include "volume/file/scalar_type.h"
+#include "volume/matrix.h"
+
+namespace understudy::volume {
+
+/// Where an image lies in the patient, in mm (Image Plane Module, Plane Position and Plane Orientation macros).
+struct DicomPlane {
+  Vec3 position;  ///< of the first pixel's middle
+  Vec3 normal;    ///< unit length: the direction of rows times that of columns
+};
+
+struct DicomFrame {
+  std::optional<DicomPlane> plane;
+  /// A scalar s means slope * s + intercept (Modality LUT Module, Pixel Value Transformation macro, and the
+  /// Dose Grid Scaling of radiotherapy).
+  double slope = 1;
+  double intercept = 0;
+};
+
+struct DicomHeader {
+  std::string path;
+  std::string series;       ///< Series Instance UID
+  std::string description;  ///< for people
+  std::array<int, 2> size{};
+  int instance = 0;  ///< Instance Number
+  ScalarType type = ScalarType::u8;
+  Vec3 spacing{1, 1, 1};  ///< in mm; the third one counts where frames have no planes
+  std::vector<DicomFrame> frames;
+  std::uint64_t file_bytes = 0;
+};
+
+/// Throws FileError.
+[[noreturn]] void fail_dicom(const std::string& path, const std::string& what);
+
+/// By the mark behind the preamble. Throws FileError where the file cannot be read.
+bool is_dicom(const std::string& path, const ReadableFiles& files);
+
+/// None where the file holds no image, as reports and directories do not. Throws FileError for damaged files,
+/// and for images that are no scalars.
+std::optional<DicomHeader> dicom_header(const std::string& path, const ReadableFiles& files);
+
+/// The file whose frames are read, which stays open for the next ones.
+class DicomFrames {
+ public:
+  /// Throws FileError.
+  DicomFrames(const DicomHeader& header, const ReadableFiles& files);
+  ~DicomFrames();
+
+  const std::string& path() const;
+  /// Fills `scalars`. Throws FileError.
+  void read(int frame, std::span<std::byte> scalars);
+
+ private:
+  class Decoder;
+  std::unique_ptr<Decoder> decoder_;
+};
+
+}  // namespace understudy::volume

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the ImageDescription of a TIFF file says of a stack, as ImageJ and OME write it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "volume/texture_space.h"
+
+namespace understudy::volume {
+
+struct TiffDescription {
+  bool by_imagej = false;
+  std::int64_t slices = 0;  ///< 0: nothing is said, and each page is a slice
+  std::int64_t time_steps = 1;
+  std::int64_t channels = 1;
+  bool steps_first = false;  ///< pages of all time steps of a slice come before those of the next slice
+  Vec3 spacing{1, 1, 1};     ///< all of them in one unit
+
+  std::int64_t images() const { return slices * time_steps * channels; }
+};
+
+/// Throws FileError.
+[[noreturn]] void fail_tiff(const std::string& path, const std::string& what);
+
+/// `path` is for messages. Throws FileError where the description contradicts itself.
+TiffDescription tiff_description(const std::string& text, const std::string& path);
+
+}  // namespace understudy::volume

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Volumes in TIFF files: the pages of one, or the files of a folder with one slice each.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "volume/file/readable_files.h"
+#include "volume/file/volume_file.h"
+
+namespace understudy::volume {
+
+/// The pages of one file. Throws FileError.
+std::unique_ptr<VolumeFile> open_tiff(const std::string& path, int time_step,
+                                      const ReadableFiles& readable = {});
+
+/// `files` of one page, size and type, in the order of slices. `folder` is for messages. Throws FileError.
+std::unique_ptr<VolumeFile> open_tiff_stack(const std::string& folder, std::vector<std::string> files,
+                                            const ReadableFiles& readable = {});
+
+}  // namespace understudy::volume

@@ -37,7 +37,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
   "Headers and archives of the ray caster, of the compositor and of the chain of\nstream processing units, with files for CMake and pkg-config.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libdcmtk-dev, libexpat1-dev, libfmt-dev, libhwy-dev, libopenjp2-7-dev, libtbb-dev, libtiff-dev, libzstd-dev, nlohmann-json3-dev, pkg-config, zlib1g-dev")
+  "libblosc-dev, libdcmtk-dev, libexpat1-dev, libfmt-dev, libhwy-dev, liblz4-dev, libopenjp2-7-dev, libtbb-dev, libtiff-dev, libzstd-dev, nlohmann-json3-dev, pkg-config, zlib1g-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "glslang-dev, libopenmpi-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-understudy)
@@ -53,7 +53,7 @@ set(CPACK_RPM_PACKAGE_AUTOREQ ON)
 set(CPACK_RPM_RUNTIME_PACKAGE_NAME understudy)
 set(CPACK_RPM_RUNTIME_PACKAGE_SUGGESTS openmpi)
 set(CPACK_RPM_DEVELOPMENT_PACKAGE_NAME understudy-devel)
-set(CPACK_RPM_DEVELOPMENT_PACKAGE_REQUIRES "dcmtk-devel, expat-devel, fmt-devel, highway-devel, tbb-devel, json-devel, libtiff-devel, libzstd-devel, openjpeg2-devel, pkgconf-pkg-config, zlib-devel")
+set(CPACK_RPM_DEVELOPMENT_PACKAGE_REQUIRES "blosc-devel, dcmtk-devel, expat-devel, fmt-devel, highway-devel, lz4-devel, tbb-devel, json-devel, libtiff-devel, libzstd-devel, openjpeg2-devel, pkgconf-pkg-config, zlib-devel")
 set(CPACK_RPM_PYTHON_PACKAGE_NAME python3-understudy)
 set(CPACK_RPM_PYTHON_PACKAGE_REQUIRES python3-numpy)
 # Folders that belong to the system.

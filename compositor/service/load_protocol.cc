@@ -32,6 +32,8 @@ std::vector<std::byte> encode(const LoadRequest& request) {
   if (request.hints.big_endian) out.integer(*request.hints.big_endian);
   out.integer(request.hints.level);
   out.integer(request.hints.time_step);
+  out.integer(request.hints.channel.has_value());
+  if (request.hints.channel) out.integer(*request.hints.channel);
   out.integer(request.texels.type.has_value());
   if (request.texels.type) out.integer(std::int64_t(*request.texels.type));
   out.integer(request.texels.range.has_value());
@@ -56,6 +58,8 @@ LoadRequest decode_load_request(std::span<const std::byte> payload) {
   constexpr int most_levels = 16;
   request.hints.level = in.small("hints.level", 0, most_levels);
   request.hints.time_step = in.small("hints.time_step", 0, int(volume::max_time_steps) - 1);
+  constexpr int most_channels = 1 << 20;
+  if (in.flag("hints.channel")) request.hints.channel = in.small("hints.channel", 0, most_channels);
   if (in.flag("texels.type")) request.texels.type = in.enumerator("texels.type", volume::TexelType::rgba8);
   if (in.flag("texels.range")) {
     request.texels.range.emplace();

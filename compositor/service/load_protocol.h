@@ -24,7 +24,7 @@ enum class LoadMessage : std::uint16_t {
 };
 
 constexpr Protocol protocol_of(LoadMessage) {
-  return {3, 16, std::uint16_t(LoadMessage::last)};
+  return {3, 17, std::uint16_t(LoadMessage::last)};
 }
 
 struct HistogramQuestion {

@@ -177,7 +177,7 @@ TEST(LoadProtocol, MessagesComeBackAsTheyWereAndCutOnesAreMalformed) {
   LoadRequest request{some_texture().description, "/a/b_41x37x29.raw", {}, {}};
   for (const bool told : {false, true}) {
     if (told) {
-      request.hints = {{{41, 37, 29}}, volume::ScalarType::f64, true, 2, 7};
+      request.hints = {{{41, 37, 29}}, volume::ScalarType::f64, true, 2, 7, 3};
       request.texels = {TexelType::u16, {{-1.5, 2e300}}};
     }
     const std::vector<std::byte> bytes = encode(request);

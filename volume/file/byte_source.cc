@@ -33,7 +33,7 @@ struct Descriptor {
 
 class PlainFile : public ByteSource {
  public:
-  PlainFile(std::string path, const ReadableFiles& files) : path_(std::move(path)), file_(files.open(path_)) {
+  PlainFile(std::string path, int opened) : path_(std::move(path)), file_(opened) {
     struct stat about {};
     if (::fstat(file_.number, &about) != 0) fail();
     if (S_ISDIR(about.st_mode))
@@ -75,7 +75,12 @@ class PlainFile : public ByteSource {
 }  // namespace
 
 std::unique_ptr<ByteSource> open_file(const std::string& path, const ReadableFiles& files) {
-  return std::make_unique<PlainFile>(path, files);
+  return std::make_unique<PlainFile>(path, files.open(path));
+}
+
+std::unique_ptr<ByteSource> open_file_if_there(const std::string& path, const ReadableFiles& files) {
+  const int file = files.open_if_there(path);
+  return file < 0 ? nullptr : std::make_unique<PlainFile>(path, file);
 }
 
 std::unique_ptr<ByteSource> open_file_or_gzip(const std::string& path, const ReadableFiles& files) {

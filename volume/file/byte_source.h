@@ -33,7 +33,10 @@ class ByteSource {
 /// A plain file, of which no byte is read that was not asked for.
 std::unique_ptr<ByteSource> open_file(const std::string& path, const ReadableFiles& files = {});
 
-/// The same, or what is in it when its name ends with .gz.
+/// The same; null where there is no such file.
+std::unique_ptr<ByteSource> open_file_if_there(const std::string& path, const ReadableFiles& files = {});
+
+/// The same as open_file, or what is in it when its name ends with .gz.
 std::unique_ptr<ByteSource> open_file_or_gzip(const std::string& path, const ReadableFiles& files = {});
 
 /// Whether `path` ends so, capitals aside.

@@ -7,6 +7,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -71,12 +72,31 @@ ReadableFiles::ReadableFiles(std::span<const std::string> folders) {
   folders_ = std::move(opened);
 }
 
-int ReadableFiles::open(const std::string& path) const {
-  errno = 0;
-  const int file = folders_ ? open_in_folders(path) : ::open(path.c_str(), to_read);
-  if (file >= 0) return file;
+namespace {
+
+[[noreturn]] void fail_to_open(const std::string& path) {
   throw FileError(
       fmt::format("{}: cannot be read: {}; check the path and its permissions", path, std::strerror(errno)));
+}
+
+}  // namespace
+
+/// -1 and errno where it cannot be.
+int ReadableFiles::opened(const std::string& path) const {
+  errno = 0;
+  return folders_ ? open_in_folders(path) : ::open(path.c_str(), to_read);
+}
+
+int ReadableFiles::open(const std::string& path) const {
+  const int file = opened(path);
+  if (file < 0) fail_to_open(path);
+  return file;
+}
+
+int ReadableFiles::open_if_there(const std::string& path) const {
+  const int file = opened(path);
+  if (file < 0 && errno != ENOENT) fail_to_open(path);
+  return file;
 }
 
 int ReadableFiles::open_in_folders(const std::string& path) const {
@@ -114,7 +134,9 @@ int open_beneath_by_walking(int folder, const std::string& path) {
   int here = ::fcntl(folder, F_DUPFD_CLOEXEC, 0);
   const fs::path way(path);
   for (auto part = way.begin(); part != way.end() && here >= 0; ++part) {
-    const bool last = std::next(part) == way.end();
+    if (part->empty()) continue;  // behind a slash at the end
+    const bool last =
+        std::all_of(std::next(part), way.end(), [](const fs::path& after) { return after.empty(); });
     // A link that is opened as a folder without being followed is none (ENOTDIR).
     const int flags = last ? to_read | O_NOFOLLOW : O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
     const bool leaves = *part == ".." || part->is_absolute();

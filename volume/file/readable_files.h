@@ -19,10 +19,13 @@ class ReadableFiles {
 
   /// A descriptor to read the file by. Throws FileError; of files elsewhere it does not tell whether they are.
   int open(const std::string& path) const;
+  /// The same; -1 where there is no such file.
+  int open_if_there(const std::string& path) const;
 
  private:
   struct Folders;
 
+  int opened(const std::string& path) const;
   int open_in_folders(const std::string& path) const;
 
   std::shared_ptr<const Folders> folders_;  ///< null: all files

@@ -152,6 +152,16 @@ void check_time_step(int step, int steps, const std::string& path) {
         fmt::format("{}: there is no time step {} in it; it holds {}, counted from 0", path, step, steps));
 }
 
+int checked_channel(std::optional<int> chosen, std::int64_t channels, const std::string& path) {
+  if (channels > 1 && !chosen)
+    throw FileError(
+        fmt::format("{}: it has {} channels; choose one: --channel 0 to {}", path, channels, channels - 1));
+  if (chosen.value_or(0) < 0 || chosen.value_or(0) >= channels)
+    throw FileError(
+        fmt::format("{}: there is no channel {} in it; it has {}, counted from 0", path, *chosen, channels));
+  return chosen.value_or(0);
+}
+
 double believable_spacing(double spacing) {
   constexpr double smallest = 1e-30, largest = 1e30;
   spacing = std::abs(spacing);

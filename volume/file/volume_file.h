@@ -25,6 +25,8 @@ struct FileHints {
   std::optional<bool> big_endian;
   int level = 0;      ///< of a hierarchical volume: which of its levels is read; 0 is the finest
   int time_step = 0;  ///< which of those that the file holds is read, counted from 0
+  /// Of an image with several channels: which is read, counted from 0. None: it has one.
+  std::optional<int> channel;
 
   bool operator==(const FileHints&) const = default;
 };
@@ -43,6 +45,7 @@ struct FileDescription {
   std::optional<LevelOfDetail> detail;  ///< where this is a coarser level
   ScalarType type = ScalarType::u8;
   int time_steps = 1;  ///< that the file holds; all else is said of each of them
+  int channels = 1;    ///< likewise
   /// A scalar s of the file means the value offset + scale * s.
   double scale = 1;
   double offset = 0;
@@ -103,6 +106,10 @@ int checked_time_steps(std::int64_t steps, const std::string& path);
 
 /// Throws FileError, naming `path`, unless `step` is one of `steps`, counted from 0.
 void check_time_step(int step, int steps, const std::string& path);
+
+/// The channel that is read. Throws FileError, naming `path`, unless `chosen` is one of `channels`, counted
+/// from 0, or there is one only.
+int checked_channel(std::optional<int> chosen, std::int64_t channels, const std::string& path);
 
 /// What may stand between two scalars: anything but a positive finite number that can be squared becomes 1.
 double believable_spacing(double spacing);

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "volume/file/chunks/zarr.h"
+#include "volume/file/chunks/zarr_metadata.h"
 #include "volume/file/file_error.h"
 #include "volume/file/hierarchical_volume.h"
 #include "volume/file/meta_image.h"
@@ -25,6 +27,7 @@ std::unique_ptr<VolumeFile> opened(const std::string& name, const FileHints& hin
   const bool folder = !is_synthetic(name) && is_folder(name, files);
   const bool in_levels = !is_synthetic(name) && !folder && is_hierarchical(name, files);
   if (in_levels) return open_level(name, hints.level, files);
+  if (folder && is_zarr(name, files)) return open_zarr(name, hints, files);
   if (hints.level != 0)
     throw FileError(
         fmt::format("{}: has no levels of detail; make some: understudy convert {} -o NAME.uvol", name, name));
@@ -36,7 +39,7 @@ std::unique_ptr<VolumeFile> opened(const std::string& name, const FileHints& hin
   if (is_nrrd(name, files)) return open_nrrd(name, hints.time_step, files);
   // A DICOM file may begin as a TIFF file does, to be both.
   if (is_dicom(name, files)) return open_series_of_file(name, hints.time_step, files);
-  if (is_tiff(name, files)) return open_tiff(name, hints.time_step, files);
+  if (is_tiff(name, files)) return open_tiff(name, hints, files);
   return open_raw(name, hints, files);
 }
 
@@ -46,6 +49,7 @@ std::unique_ptr<VolumeFile> open_volume(const std::string& name, const FileHints
                                         const ReadableFiles& files) {
   std::unique_ptr<VolumeFile> file = opened(name, hints, files);
   check_time_step(hints.time_step, file->description().time_steps, name);
+  checked_channel(hints.channel, file->description().channels, name);
   return file;
 }
 

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "apps/understudy/cli/output_file.h"
-#include "apps/understudy/file_scene/raw_hints.h"
+#include "apps/understudy/file_scene/file_hints.h"
 #include "volume/file/volume_file.h"
 #include "volume/opening/open_volume.h"
 
@@ -21,7 +21,7 @@ namespace {
 struct Arguments {
   std::string volume;
   std::string out;
-  RawHints raw;
+  FileHintOptions raw;
   int time_step = 0;
   volume::HierarchyOptions options;
   std::string prediction = "cubic";
@@ -110,7 +110,7 @@ void add_convert(CLI::App& app, std::function<int()>& chosen) {
                    "of a file that holds several: which is converted, counted from 0")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  add_raw_hints(*subcommand, arguments->raw);
+  add_file_hints(*subcommand, arguments->raw);
   subcommand->callback([arguments, &chosen] { chosen = [arguments] { return convert(*arguments); }; });
 }
 

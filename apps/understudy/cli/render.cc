@@ -189,10 +189,11 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
       ->required()
       ->check(can_be_written(".png"));
   render_command
-      ->add_option(
-          "--level", arguments->scene.level,
-          "of a hierarchical volume: a coarser level of detail, with every 2nd (1), 4th (2), … sample; "
-          "--step is in its samples")
+      ->add_option("--level", arguments->scene.level,
+                   "of a hierarchical volume: a coarser level of detail, with every 2nd (1), 4th (2), … "
+                   "sample; of OME-Zarr: "
+                   "one of its levels; "
+                   "--step is in its samples")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   render_command

@@ -63,7 +63,7 @@ void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
           "VOLUME", arguments.volumes,
           "raw (size and type in its name: head_256x256x113_int16be.raw.gz), NRRD, NIfTI, MetaImage, DICOM, "
           "TIFF, "
-          "VTI or UVOL, a folder of DICOM or TIFF slices, or "
+          "VTI or UVOL, a folder of DICOM or TIFF slices or of Zarr, or "
           "synthetic:XxYxZ[:u8|u16|f32[:shells|lobes|gyroid]]; several, a pattern ('step_*.vti'), or a file "
           "that holds several, are the time steps of a series")
       ->required();
@@ -91,7 +91,7 @@ void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
                   "early ray termination: a ray ends where less than this shows through")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  add_raw_hints(subcommand, arguments.raw);
+  add_file_hints(subcommand, arguments.raw);
   subcommand.add_option("--spacing", arguments.spacing, "between scalars, instead of the file's")
       ->type_name("X Y Z")
       ->expected(3)

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/file_scene/raw_hints.h"
+#include "apps/understudy/file_scene/file_hints.h"
 #include "apps/understudy/file_scene/shading_options.h"
 #include "compositor/service/loading_service.h"
 #include "volume/file/series.h"
@@ -28,7 +28,7 @@ struct SceneArguments {
   std::string size = "512x512";
   double step = 1;
   double termination = 5e-6;
-  RawHints raw;
+  FileHintOptions raw;
   std::vector<double> spacing;
   std::string texels;
   std::string range;

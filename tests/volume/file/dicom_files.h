@@ -3,10 +3,13 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <map>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/volume/file/volume_files.h"
@@ -48,20 +51,26 @@ inline std::string text_of(const std::vector<double>& numbers) {
 
 }  // namespace dicom
 
+/// By group and number, in whose order they are written.
+using DicomElements = std::map<std::pair<unsigned, unsigned>, std::string>;
+
 /// What a test wants to be otherwise.
 struct DicomFile {
   std::array<int, 2> size{13, 7};
   ScalarType type = ScalarType::i16;
   int stored_bits = 0;  ///< 0: all of them
   std::string series = "1.2.826.0.1.3680043.2.1125.1";
+  std::string image;  ///< empty: made of series, instance and position
   int instance = 1;
   std::vector<double> position{0, 0, 0};
   std::vector<double> orientation{1, 0, 0, 0, 1, 0};
+  std::vector<double> pixel_spacing{0.5, 0.25};  ///< between rows, between columns
   double slope = 1;
   double intercept = 0;
   std::vector<std::vector<double>> frame_positions;  ///< of a file with several frames (Enhanced CT)
   unsigned samples = 1;
   std::string meaning = "MONOCHROME2";
+  DicomElements more;
   Bytes pixels;
 };
 
@@ -69,47 +78,69 @@ inline std::string dicom_bytes(const DicomFile& file) {
   using namespace dicom;
   const bool enhanced = !file.frame_positions.empty();
   const std::string kind = enhanced ? "1.2.840.10008.5.1.4.1.1.2.1" : "1.2.840.10008.5.1.4.1.1.2";
+  const std::string image =
+      !file.image.empty()
+          ? file.image
+          : file.series + "." + std::to_string(file.instance) + "." +
+                std::to_string(file.position.empty() ? 0 : std::abs(std::llround(1000 * file.position[2])));
   const std::string meta = element(2, 1, "OB", std::string("\0\1", 2)) + element(2, 2, "UI", kind) +
-                           element(2, 3, "UI", file.series + "." + std::to_string(file.instance)) +
-                           element(2, 0x10, "UI", "1.2.840.10008.1.2.1");
+                           element(2, 3, "UI", image) + element(2, 0x10, "UI", "1.2.840.10008.1.2.1");
   const unsigned bits = unsigned(bytes_per_scalar(file.type)) * 8;
   const unsigned stored = file.stored_bits != 0 ? unsigned(file.stored_bits) : bits;
   const bool with_sign =
       file.type == ScalarType::i8 || file.type == ScalarType::i16 || file.type == ScalarType::i32;
-  std::string text = std::string(128, '\0') + "DICM" + element(2, 0, "UL", little(meta.size(), 4)) + meta;
-  text += element(8, 0x16, "UI", kind) +
-          element(8, 0x18, "UI", file.series + "." + std::to_string(file.instance)) +
-          element(8, 0x60, "CS", "CT") + element(8, 0x103E, "LO", "head") + element(0x18, 0x50, "DS", "5") +
-          element(0x20, 0xE, "UI", file.series) + element(0x20, 0x11, "IS", "4") +
-          element(0x20, 0x13, "IS", std::to_string(file.instance));
-  if (!enhanced && !file.position.empty())
-    text += element(0x20, 0x32, "DS", text_of(file.position)) +
-            element(0x20, 0x37, "DS", text_of(file.orientation));
-  text += number(0x28, 2, file.samples) + element(0x28, 4, "CS", file.meaning);
-  if (file.samples > 1) text += number(0x28, 6, 0);
-  if (enhanced) text += element(0x28, 8, "IS", std::to_string(file.frame_positions.size()));
-  text += number(0x28, 0x10, unsigned(file.size[1])) + number(0x28, 0x11, unsigned(file.size[0]));
-  if (!enhanced) text += element(0x28, 0x30, "DS", "0.5\\0.25");
-  text += number(0x28, 0x100, bits) + number(0x28, 0x101, stored) + number(0x28, 0x102, stored - 1) +
-          number(0x28, 0x103, with_sign ? 1 : 0);
-  if (!enhanced)
-    text += element(0x28, 0x1052, "DS", std::to_string(file.intercept)) +
-            element(0x28, 0x1053, "DS", std::to_string(file.slope));
+  DicomElements elements;
+  const auto put = [&](unsigned group, unsigned name, const std::string& vr, const std::string& value) {
+    elements[{group, name}] = element(group, name, vr, value);
+  };
+  const auto put_number = [&](unsigned name, unsigned value) { put(0x28, name, "US", little(value, 2)); };
+  put(8, 0x16, "UI", kind);
+  put(8, 0x18, "UI", image);
+  put(8, 0x60, "CS", "CT");
+  put(8, 0x103E, "LO", "head");
+  put(0x18, 0x50, "DS", "5");
+  put(0x20, 0xE, "UI", file.series);
+  put(0x20, 0x11, "IS", "4");
+  put(0x20, 0x13, "IS", std::to_string(file.instance));
+  put_number(2, file.samples);
+  put(0x28, 4, "CS", file.meaning);
+  if (file.samples > 1) put_number(6, 0);
+  put_number(0x10, unsigned(file.size[1]));
+  put_number(0x11, unsigned(file.size[0]));
+  put_number(0x100, bits);
+  put_number(0x101, stored);
+  put_number(0x102, stored - 1);
+  put_number(0x103, with_sign ? 1 : 0);
+  const std::string slope = element(0x28, 0x1053, "DS", std::to_string(file.slope)),
+                    intercept = element(0x28, 0x1052, "DS", std::to_string(file.intercept));
   if (enhanced) {
-    const std::string measures = element(0x18, 0x50, "DS", "5") + element(0x28, 0x30, "DS", "0.5\\0.25");
-    const std::string meaning = element(0x28, 0x1052, "DS", std::to_string(file.intercept)) +
-                                element(0x28, 0x1053, "DS", std::to_string(file.slope)) +
-                                element(0x28, 0x1054, "LO", "HU");
-    text += sequence(0x5200, 0x9229,
-                     {sequence(0x20, 0x9116, {element(0x20, 0x37, "DS", text_of(file.orientation))}) +
-                      sequence(0x28, 0x9110, {measures}) + sequence(0x28, 0x9145, {meaning})});
+    put(0x28, 8, "IS", std::to_string(file.frame_positions.size()));
+    const std::string measures =
+        element(0x18, 0x50, "DS", "5") + element(0x28, 0x30, "DS", text_of(file.pixel_spacing));
+    elements[{0x5200, 0x9229}] =
+        sequence(0x5200, 0x9229,
+                 {sequence(0x20, 0x9116, {element(0x20, 0x37, "DS", text_of(file.orientation))}) +
+                  sequence(0x28, 0x9110, {measures}) +
+                  sequence(0x28, 0x9145, {intercept + slope + element(0x28, 0x1054, "LO", "HU")})});
     std::vector<std::string> frames;
     for (const std::vector<double>& position : file.frame_positions)
       frames.push_back(sequence(0x20, 0x9113, {element(0x20, 0x32, "DS", text_of(position))}));
-    text += sequence(0x5200, 0x9230, frames);
+    elements[{0x5200, 0x9230}] = sequence(0x5200, 0x9230, frames);
+  } else {
+    if (!file.position.empty()) {
+      put(0x20, 0x32, "DS", text_of(file.position));
+      put(0x20, 0x37, "DS", text_of(file.orientation));
+    }
+    put(0x28, 0x30, "DS", text_of(file.pixel_spacing));
+    elements[{0x28, 0x1052}] = intercept;
+    elements[{0x28, 0x1053}] = slope;
   }
-  return text + element(0x7FE0, 0x10, bits == 8 ? "OB" : "OW",
-                        std::string(reinterpret_cast<const char*>(file.pixels.data()), file.pixels.size()));
+  put(0x7FE0, 0x10, bits == 8 ? "OB" : "OW",
+      std::string(reinterpret_cast<const char*>(file.pixels.data()), file.pixels.size()));
+  for (const auto& [tag, more] : file.more) elements[tag] = more;
+  std::string text = std::string(128, '\0') + "DICM" + element(2, 0, "UL", little(meta.size(), 4)) + meta;
+  for (const auto& [tag, one] : elements) text += one;
+  return text;
 }
 
 /// The same image as gdcmconv encodes it with `option`, which is another library than the one that reads it.

@@ -43,6 +43,18 @@ void write_series(const TemporaryFolder& folder, const Bytes& scalars, ScalarTyp
   }
 }
 
+/// Options of gdcmconv, and the transfer syntax that each makes.
+constexpr std::array<std::pair<const char*, const char*>, 5> syntaxes{{{"--implicit", "1.2.840.10008.1.2"},
+                                                                       {"--rle", "1.2.840.10008.1.2.5"},
+                                                                       {"--jpeg", "1.2.840.10008.1.2.4.70"},
+                                                                       {"--jpegls", "1.2.840.10008.1.2.4.80"},
+                                                                       {"--j2k", "1.2.840.10008.1.2.4.90"}}};
+
+std::string text_in(const TemporaryFolder& folder, const std::string& name) {
+  const Bytes bytes = folder.read(name);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 TEST(DicomSeries, SlicesLieInTheOrderOfTheirPositions) {
   for (const ScalarType type : {ScalarType::u8, ScalarType::i8, ScalarType::u16, ScalarType::i16}) {
     const TemporaryFolder folder;
@@ -66,7 +78,7 @@ TEST(DicomSeries, SlicesLieInTheOrderOfTheirPositions) {
 }
 
 TEST(DicomSeries, EveryCompressionOfScannersAndArchives) {
-  for (const char* const option : {"--implicit", "--deflated", "--rle", "--jpeg", "--jpegls", "--j2k"}) {
+  for (const auto& [option, syntax] : syntaxes) {
     SCOPED_TRACE(option);
     const TemporaryFolder folder, packed;
     const Bytes scalars = random_scalars(series_size, ScalarType::u16, 6);
@@ -75,6 +87,7 @@ TEST(DicomSeries, EveryCompressionOfScannersAndArchives) {
       file.type = ScalarType::u16;
       const std::string plain = folder.write(std::to_string(z) + ".dcm", dicom_bytes(file));
       recompress(plain, packed.file(std::to_string(z) + ".dcm"), option);
+      ASSERT_THAT(text_in(packed, std::to_string(z) + ".dcm"), HasSubstr(syntax));
     }
     const auto file = open_volume(packed.file(""));
     ASSERT_EQ(file->description().size, series_size);
@@ -142,7 +155,89 @@ TEST(DicomSeries, SeveralImagesOfAPlaceAreTimeSteps) {
   EXPECT_THAT(trouble_with(folder.file(""), at_step(3)),
               HasSubstr("there is no time step 3 in it; it holds 3"));
   std::filesystem::remove(folder.file("8"));
-  EXPECT_THAT(trouble_with(folder.file("")), HasSubstr("2 images lie where it lies, 3 elsewhere"));
+  EXPECT_THAT(trouble_with(folder.file("")), HasSubstr("images lie where it lies"));
+}
+
+TEST(DicomSeries, TimeStepsComeByTemporalPositionBeforeTheirNumbers) {
+  const TemporaryFolder folder;
+  const std::array<Bytes, 2> steps{random_scalars(series_size, ScalarType::i16, 1),
+                                   random_scalars(series_size, ScalarType::i16, 2)};
+  for (int z = 0; z < series_size[2]; ++z)
+    for (int t = 0; t < 2; ++t) {
+      DicomFile file = slice_file(steps[std::size_t(t)], z);
+      file.instance = z % 2 == t ? 1 : 2;  // numbered anew for each acquisition
+      file.more[{0x20, 0x100}] = dicom::element(0x20, 0x100, "IS", std::to_string(t + 1));
+      folder.write(std::to_string(2 * z + t), dicom_bytes(file));
+    }
+  for (int t = 0; t < 2; ++t) {
+    const auto file = open_volume(folder.file(""), at_step(t));
+    EXPECT_EQ(file->description().time_steps, 2);
+    EXPECT_EQ(read_box(*file, whole(*file)), steps[std::size_t(t)]);
+  }
+}
+
+TEST(DicomSeries, SlicesOfSmallThingsLieClose) {
+  const TemporaryFolder folder;
+  const Bytes scalars = random_scalars(series_size, ScalarType::i16, 3);
+  for (int z = 0; z < series_size[2]; ++z) {
+    DicomFile file = slice_file(scalars, z);
+    file.position = {0, 0, 0.008 * z};
+    file.pixel_spacing = {0.008, 0.008};
+    folder.write(std::to_string(z), dicom_bytes(file));
+  }
+  const auto file = open_volume(folder.file(""));
+  ASSERT_EQ(file->description().size, series_size);
+  EXPECT_NEAR(file->description().spacing[2], 0.008, 1e-9);
+  EXPECT_EQ(read_box(*file, whole(*file)), scalars);
+}
+
+TEST(DicomSeries, FramesOfADoseLieByTheirOffsets) {
+  const TemporaryFolder folder;
+  const Bytes scalars = random_scalars(series_size, ScalarType::u16, 4);
+  DicomFile file;
+  file.type = ScalarType::u16;
+  std::vector<double> offsets;
+  for (int z = series_size[2] - 1; z >= 0; --z) {  // from the head down
+    file.pixels = joined(file.pixels, slice_of(scalars, z));
+    offsets.push_back(3.0 * (z + 1 - series_size[2]));
+  }
+  file.more[{0x28, 8}] = dicom::element(0x28, 8, "IS", std::to_string(series_size[2]));
+  file.more[{0x28, 0x1052}] = file.more[{0x28, 0x1053}] = "";
+  file.more[{0x3004, 0xC}] = dicom::element(0x3004, 0xC, "DS", dicom::text_of(offsets));
+  file.more[{0x3004, 0xE}] = dicom::element(0x3004, 0xE, "DS", "0.5");
+  folder.write("dose.dcm", dicom_bytes(file));
+  const auto volume = open_volume(folder.file("dose.dcm"));
+  ASSERT_EQ(volume->description().size, series_size);
+  EXPECT_NEAR(volume->description().spacing[2], 3, 1e-9);
+  EXPECT_EQ(volume->description().scale, 0.5);
+  EXPECT_EQ(read_box(*volume, whole(*volume)), scalars);
+}
+
+TEST(DicomSeries, FramesThatFollowInTimeAreTimeSteps) {
+  const TemporaryFolder folder;
+  const Bytes scalars = random_scalars(series_size, ScalarType::i16, 4);
+  DicomFile file;
+  file.position.clear();
+  file.pixels = scalars;
+  file.more[{0x28, 8}] = dicom::element(0x28, 8, "IS", std::to_string(series_size[2]));
+  const std::string at_frame_time = dicom::little(0x18, 2) + dicom::little(0x1063, 2);
+  file.more[{0x28, 9}] = dicom::element(0x28, 9, "AT", at_frame_time);
+  folder.write("cine.dcm", dicom_bytes(file));
+  const auto volume = open_volume(folder.file("cine.dcm"), at_step(4));
+  EXPECT_EQ(volume->description().time_steps, series_size[2]);
+  EXPECT_EQ(volume->description().size[2], 1);
+  EXPECT_EQ(read_box(*volume, whole(*volume)), slice_of(scalars, 4));
+}
+
+TEST(DicomSeries, FilesWithoutAPreambleAreKnownByTheirName) {
+  const TemporaryFolder folder;
+  DicomFile file;
+  file.pixels = random_scalars({13, 7, 1}, ScalarType::i16, 5);
+  const std::string whole_file = dicom_bytes(file);
+  const std::size_t first = whole_file.find(std::string("\x08\0\x16\0", 4));
+  folder.write("old.dcm", whole_file.substr(first));
+  const auto volume = open_volume(folder.file("old.dcm"));
+  EXPECT_EQ(read_box(*volume, whole(*volume)), file.pixels);
 }
 
 TEST(DicomSeries, FramesOfOneFileLieWhereTheyLie) {
@@ -183,10 +278,11 @@ TEST(DicomSeries, FramesOfOneFileInEveryCompression) {
   for (int z = 0; z < series_size[2]; ++z) file.frame_positions.push_back({0, 0, 2.5 * z});
   const TemporaryFolder folder;
   const std::string plain = folder.write("plain.dcm", dicom_bytes(file));
-  for (const char* const option : {"--implicit", "--rle", "--jpeg", "--jpegls", "--j2k"}) {
+  for (const auto& [option, syntax] : syntaxes) {
     SCOPED_TRACE(option);
     const TemporaryFolder packed;
     recompress(plain, packed.file("a.dcm"), option);
+    ASSERT_THAT(text_in(packed, "a.dcm"), HasSubstr(syntax));
     const auto volume = open_volume(packed.file("a.dcm"));
     EXPECT_EQ(read_box(*volume, whole(*volume)), expected);
     EXPECT_EQ(read_box(*volume, {{2, 1, 4}, {3, 2, 5}}).size(), 2);
@@ -203,12 +299,20 @@ TEST(DicomSeries, OneOfSeveralIsChosenByAFileOfIt) {
     other.series += ".2";
     folder.write("chest" + std::to_string(z), dicom_bytes(other));
   }
+  DicomFile report;
+  report.series += ".3";
+  report.samples = 3;
+  report.meaning = "RGB";
+  report.type = ScalarType::u8;
+  report.pixels.resize(3 * 13 * 7 + 1);
+  folder.write("report", dicom_bytes(report));
   EXPECT_THAT(
       trouble_with(folder.file("")),
-      AllOf(HasSubstr("images of 2 series lie in this folder; give a file of the one that is meant"),
+      AllOf(HasSubstr("images of 3 series lie in this folder; give a file of the one that is meant"),
             HasSubstr("series 4 'head', 9 files: " + folder.file("chest0")), HasSubstr(folder.file("head0"))));
   const auto file = open_volume(folder.file("head4"));
   EXPECT_EQ(read_box(*file, whole(*file)), head);
+  EXPECT_THAT(trouble_with(folder.file("report")), HasSubstr("its pixels are colours (RGB)"));
 }
 
 TEST(DicomSeries, WhatIsNoVolumeSaysWhy) {
@@ -228,8 +332,26 @@ TEST(DicomSeries, WhatIsNoVolumeSaysWhy) {
   last.size = {7, 13};
   EXPECT_THAT(with_last(last), HasSubstr("8: DICOM: it has 7 x 13 pixels of i16, where 0 has 13 x 7"));
   last = slice_file(scalars, 8);
-  last.orientation = {0, 1, 0, 0, 0, 1};
-  EXPECT_THAT(with_last(last), HasSubstr("it lies in another plane than 0"));
+  for (const std::vector<double>& turned : {std::vector<double>{0, 1, 0, 0, 0, 1}, {-1, 0, 0, 0, -1, 0}}) {
+    last.orientation = turned;
+    EXPECT_THAT(with_last(last), HasSubstr("another plane than"));
+  }
+  last = slice_file(scalars, 8);
+  last.pixel_spacing = {0.5, 0.5};
+  EXPECT_THAT(with_last(last), HasSubstr("put images of one reconstruction into a folder of their own"));
+  last = slice_file(scalars, 8);
+  last.position[0] += 2;
+  EXPECT_THAT(with_last(last), HasSubstr("its rows begin 2 mm beside those of 0: the gantry was tilted"));
+  last = slice_file(scalars, 7);
+  last.image = "1.2.3";
+  EXPECT_THAT(with_last(last), HasSubstr("images lie where it lies"));
+  last = slice_file(scalars, 8);
+  last.more[{8, 8}] = dicom::element(8, 8, "CS", "ORIGINAL\\PRIMARY\\M\\MOSAIC");
+  EXPECT_THAT(with_last(last), HasSubstr("MOSAIC"));
+  last = slice_file(scalars, 8);
+  last.more[{0x28, 0x3000}] = dicom::sequence(0x28, 0x3000, {});
+  EXPECT_THAT(with_last(last), HasSubstr("Modality LUT"));
+  last = slice_file(scalars, 8);
   last = slice_file(scalars, 8);
   last.meaning = "RGB";
   last.samples = 3;
@@ -267,6 +389,54 @@ TEST(DicomSeries, ChangedBytesNeverDoMoreHarmThanAnError) {
   std::printf("%d were read, %d refused\n", survived, refused);
   EXPECT_GT(refused, 100);
   EXPECT_GT(survived, 100);
+}
+
+TEST(DicomSeries, EveryFileTwiceIsNoTimeSeries) {
+  const TemporaryFolder folder;
+  const Bytes scalars = random_scalars(series_size, ScalarType::i16, 9);
+  for (int z = 0; z < series_size[2]; ++z)
+    for (const char* const copy : {"a", "b"})
+      folder.write(copy + std::to_string(z), dicom_bytes(slice_file(scalars, z)));
+  EXPECT_THAT(trouble_with(folder.file("")), HasSubstr("nothing says which of them comes first"));
+}
+
+/// Each level would take a part of the stack.
+TEST(DicomSeries, DeepSequencesAreRefused) {
+  const TemporaryFolder folder;
+  DicomFile file;
+  file.pixels.resize(2 * 13 * 7);
+  for (const bool with_length : {false, true}) {
+    std::string nested;
+    if (with_length) {
+      for (int i = 0; i < 2000; ++i) nested = dicom::sequence(8, 0x1140, {nested});
+    } else {
+      using dicom::little;
+      for (int i = 0; i < 100'000; ++i)
+        nested += little(8, 2) + little(0x1140, 2) + "SQ" + little(0, 2) + little(0xFFFFFFFF, 4) +
+                  little(0xFFFE, 2) + little(0xE000, 2) + little(0xFFFFFFFF, 4);
+    }
+    file.more[{8, 0x1140}] = nested;
+    EXPECT_THAT(trouble_with(folder.write("a.dcm", dicom_bytes(file))), HasSubstr("more than 32 deep"));
+  }
+}
+
+/// What DCMTK would decode into memory of another size.
+TEST(DicomSeries, JpegImagesOfAnotherSizeOrDepthAreRefused) {
+  const TemporaryFolder folder, alone;
+  DicomFile file;
+  file.type = ScalarType::u16;
+  file.pixels = random_scalars({13, 7, 1}, ScalarType::u16, 6);
+  recompress(folder.write("plain", dicom_bytes(file)), folder.file("a.dcm"), "--jpeg");
+  const std::string good = text_in(folder, "a.dcm");
+  const std::size_t frame = good.find("\xFF\xC3");
+  ASSERT_NE(frame, std::string::npos);
+  for (const auto& [offset, value] : {std::pair{4, 8}, {6, 9}, {8, 12}, {9, 3}}) {
+    std::string other = good;
+    other[frame + std::size_t(offset)] = char(value);
+    EXPECT_THAT(trouble_with(alone.write("a.dcm", other)), HasSubstr("its JPEG image is one of"));
+  }
+  recompress(folder.file("plain"), alone.file("a.dcm"), "--deflated");
+  EXPECT_THAT(trouble_with(alone.file("a.dcm")), HasSubstr("it is deflated, which is not read"));
 }
 
 TEST(DicomSeries, FoldersAreReadOnlyWhereClientsMay) {

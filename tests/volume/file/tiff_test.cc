@@ -129,10 +129,14 @@ TEST(TiffFile, StacksOfImageJHaveTimeStepsAndSpacing) {
     EXPECT_THAT(file->description().spacing, ElementsAre(0.25, 0.25, 2.5));
     EXPECT_EQ(read_box(*file, whole(*file)), page_of(scalars, t, 2));
   }
-  EXPECT_THAT(
-      trouble_with(write_pages(folder.file("b.tif"),
-                               {.description = "ImageJ=1.53t\nimages=6\nchannels=2\nslices=3\n"}, scalars, 6)),
-      HasSubstr("it has 2 channels; extract one first"));
+  const std::string channels = write_pages(
+      folder.file("b.tif"), {.description = "ImageJ=1.53t\nimages=6\nchannels=2\nslices=3\n"}, scalars, 6);
+  EXPECT_THAT(trouble_with(channels), HasSubstr("it has 2 channels; choose one: --channel 0 to 1"));
+  FileHints second;
+  second.channel = 1;
+  Bytes expected;
+  for (const int page : {1, 3, 5}) expected = joined(expected, page_of(scalars, page, 6));
+  EXPECT_EQ(read_box(*open_volume(channels, second), {{0, 0, 0}, {stack_size[0], stack_size[1], 3}}), expected);
   EXPECT_THAT(trouble_with(write_pages(folder.file("c.tif"),
                                        {.description = "ImageJ=1.53t\nimages=9\nslices=9\n"}, scalars, 6)),
               HasSubstr("it speaks of 9 images, but has 6"));
@@ -205,6 +209,9 @@ TEST(TiffFile, StacksOfOmeInEitherOrder) {
   for (const int page : {1, 3, 5}) expected = joined(expected, page_of(scalars, page, 6));
   EXPECT_EQ(read_box(*open_volume(second, at_step(1)), {{0, 0, 0}, {stack_size[0], stack_size[1], 3}}),
             expected);
+  EXPECT_THAT(
+      trouble_with(with(sizes + "DimensionOrder='XYZCT'><TiffData IFD='0' FirstZ='2'/><TiffData IFD='1'")),
+      HasSubstr("its page 0 holds what should be in page 2"));
   EXPECT_THAT(trouble_with(with("SizeZ='12' SizeC='1' SizeT='2'")),
               HasSubstr("it speaks of 24 images, but has 6"));
 }
@@ -220,6 +227,15 @@ TEST(TiffFolder, FilesAreSlicesInTheOrderOfTheirNumbers) {
   const auto file = open_volume(folder.file(""));
   ASSERT_EQ(file->description().size, tall);
   EXPECT_EQ(read_box(*file, whole(*file)), scalars);
+  std::filesystem::rename(folder.file("slice_7.tif"), folder.file(".kept"));
+  EXPECT_THAT(trouble_with(folder.file("")), HasSubstr("slice_8.tif: does not follow slice_6.tif"));
+  std::filesystem::rename(folder.file(".kept"), folder.file("slice_7.tif"));
+  write_pages(folder.file("slice_mask.tif"), {}, page_of(scalars, 0, tall[2]), 1);
+  EXPECT_THAT(trouble_with(folder.file("")), HasSubstr("slice_mask.tif: does not follow slice_11.tif"));
+  std::filesystem::remove(folder.file("slice_mask.tif"));
+  folder.write("slice_12.tif", "");
+  EXPECT_THAT(trouble_with(folder.file("")), HasSubstr("slice_12.tif: is named as a TIFF file, but is none"));
+  std::filesystem::remove(folder.file("slice_12.tif"));
   write_pages(folder.file("slice_5.tif"), {}, scalars, 2);
   EXPECT_THAT(trouble_with(folder.file("")), AllOf(HasSubstr("slice_5.tif"), HasSubstr("2 slices of 37 x 21")));
 }
@@ -262,7 +278,7 @@ TEST(TiffFile, WhatIsNoVolumeSaysWhy) {
   write_page(tiff, {}, {stack_size[1], stack_size[0]}, page_of(scalars, 1, stack_size[2]));
   TIFFClose(tiff);
   EXPECT_THAT(trouble_with(folder.file("d.tif")),
-              HasSubstr("page 1 has another size or type than the first one"));
+              HasSubstr("page 1 has 21 x 37 pixels of u16, where the first one has 37 x 21"));
   const TemporaryFolder empty;
   EXPECT_THAT(trouble_with(empty.file("")), HasSubstr("is a folder without slices in DICOM or TIFF files"));
 }

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <limits>
@@ -26,6 +27,7 @@
 #include "volume/file/byte_source.h"
 #include "volume/file/file_error.h"
 #include "volume/file/header_fields.h"
+#include "volume/file/slices/dicom_nesting.h"
 #include "volume/file/slices/dicom_rle.h"
 #include "volume/file/slices/jpeg2000.h"
 #include "volume/file/slices/jpeg_header.h"
@@ -36,13 +38,14 @@ namespace understudy::volume {
 namespace {
 
 constexpr std::uint64_t preamble_bytes = 128;
-constexpr int most_frames = 1 << 20;
 
 /// DCMTK says what went wrong on the standard error stream, too, where nobody asked for it.
 void prepare_dcmtk() {
   static std::once_flag once;
   std::call_once(once, [] {
     OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+    // Archives write elements without their types, which are known all the same.
+    dcmEnableUnknownVRConversion.set(OFTrue);
     DJDecoderRegistration::registerCodecs();
     DJLSDecoderRegistration::registerCodecs();
   });
@@ -67,32 +70,45 @@ auto with_dcmtk(const std::string& path, const Function& function) {
 class OpenFile {
  public:
   OpenFile(const std::string& path, const ReadableFiles& files)
-      : number_(files.open(path)), name_(fmt::format("/proc/self/fd/{}", number_)) {}
+      : number_(files.open(path)), name_(fmt::format("/proc/self/fd/{}", number_)) {
+    struct stat about {};
+    if (::fstat(number_, &about) == 0 && S_ISREG(about.st_mode)) {
+      bytes_ = std::uint64_t(about.st_size);
+      return;
+    }
+    ::close(number_);
+    throw FileError(fmt::format("{}: is no regular file; write its contents into one first", path));
+  }
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
   ~OpenFile() { ::close(number_); }
 
   OFFilename name() const { return OFFilename(name_.c_str()); }
-  std::uint64_t bytes() const {
-    struct stat about {};
-    return ::fstat(number_, &about) == 0 ? std::uint64_t(about.st_size) : 0;
-  }
+  std::uint64_t bytes() const { return bytes_; }
 
  private:
   int number_;
   std::string name_;
+  std::uint64_t bytes_ = 0;
 };
 
 using Numbers = std::vector<double>;
 
-/// Those before the first that is none.
+/// Those before the first that is none, whatever the value representation.
 Numbers numbers_of(DcmItem* item, const DcmTagKey& tag, std::size_t most) {
   Numbers found;
-  Float64 number = 0;
-  while (item != nullptr && found.size() < most &&
-         item->findAndGetFloat64(tag, number, static_cast<unsigned long>(found.size())).good() &&
-         std::isfinite(number))
+  OFString text;
+  DcmElement* element = nullptr;
+  // Of unknown types the text is that of bytes.
+  if (item == nullptr || item->findAndGetElement(tag, element).bad() || element->ident() == EVR_UN)
+    return found;
+  while (found.size() < most &&
+         item->findAndGetOFString(tag, text, static_cast<unsigned long>(found.size())).good()) {
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    if (end == text.c_str() || !std::isfinite(number)) break;
     found.push_back(number);
+  }
   return found;
 }
 
@@ -111,9 +127,10 @@ unsigned short_of(DcmItem& item, const DcmTagKey& tag, unsigned otherwise) {
   return item.findAndGetUint16(tag, number).good() ? number : otherwise;
 }
 
-DcmItem* item_of(DcmItem* item, const DcmTagKey& sequence, long number = 0) {
+/// The first one.
+DcmItem* item_of(DcmItem* item, const DcmTagKey& sequence) {
   DcmItem* found = nullptr;
-  return item != nullptr && item->findAndGetSequenceItem(sequence, found, number).good() ? found : nullptr;
+  return item != nullptr && item->findAndGetSequenceItem(sequence, found).good() ? found : nullptr;
 }
 
 /// How the bits of a pixel make a number.
@@ -151,27 +168,40 @@ std::optional<ScalarType> scalar_type(const PixelBits& bits) {
   }
 }
 
-ScalarType checked_type(DcmItem& image, const std::string& path) {
+/// Why an image cannot be shown as scalars; empty where it can.
+std::string trouble_with(DcmItem& image) {
   const std::string meaning = text_of(image, DCM_PhotometricInterpretation);
   if (short_of(image, DCM_SamplesPerPixel, 1) != 1 || (meaning != "MONOCHROME1" && meaning != "MONOCHROME2"))
-    fail_dicom(path,
-               fmt::format("its pixels are colours ({}), not scalars; extract one component first", meaning));
+    return fmt::format("its pixels are colours ({}), not scalars; extract one component first", meaning);
   const PixelBits bits = bits_of(image);
-  const std::optional<ScalarType> type = scalar_type(bits);
-  if (!type)
-    fail_dicom(path, fmt::format("pixels of {} bits in {} are not read; write them with 8, 16 or 32 bits first",
-                                 bits.stored, bits.allocated));
-  return *type;
+  if (!scalar_type(bits))
+    return fmt::format("pixels of {} bits in {} are not read; write them with 8, 16 or 32 bits first",
+                       bits.stored, bits.allocated);
+  if (image.tagExists(DCM_ModalityLUTSequence))
+    return "its values are told by a table (Modality LUT), which is not read; convert it first (dcm2niix)";
+  OFString kind;
+  if (image.findAndGetOFStringArray(DCM_ImageType, kind).good() && kind.find("MOSAIC") != OFString_npos)
+    return "its slices lie beside each other in one image (MOSAIC); convert the series first (dcm2niix)";
+  return {};
 }
 
 /// The elements of an image with frames: `macro` of one frame or of all, or the image itself.
 class Frames {
  public:
   explicit Frames(DcmItem& image)
-      : image_(image), shared_(item_of(&image, DCM_SharedFunctionalGroupsSequence)) {}
+      : image_(image), shared_(item_of(&image, DCM_SharedFunctionalGroupsSequence)) {
+    DcmSequenceOfItems* groups = nullptr;
+    if (image.findAndGetSequence(DCM_PerFrameFunctionalGroupsSequence, groups).bad()) return;
+    // Asked for by its number, an item is looked for from the first one on.
+    for (DcmObject* item = nullptr; (item = groups->nextInContainer(item)) != nullptr;)
+      own_.push_back(dynamic_cast<DcmItem*>(item));
+  }
 
-  Numbers numbers(int frame, const DcmTagKey& macro, const DcmTagKey& tag, std::size_t most) const {
-    DcmItem* const own = item_of(item_of(&image_, DCM_PerFrameFunctionalGroupsSequence, frame), macro);
+  /// How many say something of their own.
+  std::size_t own() const { return own_.size(); }
+
+  Numbers numbers(std::size_t frame, const DcmTagKey& macro, const DcmTagKey& tag, std::size_t most) const {
+    DcmItem* const own = frame < own_.size() ? item_of(own_[frame], macro) : nullptr;
     for (DcmItem* const item : {own, item_of(shared_, macro), &image_})
       if (Numbers found = numbers_of(item, tag, most); !found.empty()) return found;
     return {};
@@ -180,30 +210,50 @@ class Frames {
  private:
   DcmItem& image_;
   DcmItem* shared_;
+  std::vector<DcmItem*> own_;
 };
 
 std::optional<DicomPlane> plane_of(const Numbers& position, const Numbers& ways) {
   if (position.size() != 3 || ways.size() != 6) return std::nullopt;
-  const Vec3 normal = cross({ways[0], ways[1], ways[2]}, {ways[3], ways[4], ways[5]});
+  const Vec3 rows{ways[0], ways[1], ways[2]}, columns{ways[3], ways[4], ways[5]}, normal = cross(rows, columns);
   const double size = length(normal);
   constexpr double shortest = 0.5;  // 1 for rows and columns at right angles
   if (!(size > shortest)) return std::nullopt;
-  return DicomPlane{{position[0], position[1], position[2]}, scale(normal, 1 / size)};
+  return DicomPlane{{position[0], position[1], position[2]}, rows, columns, scale(normal, 1 / size)};
 }
 
-std::vector<DicomFrame> frames_of(DcmItem& image, const std::string& path) {
+/// Frames that say nothing of their own lie along the normal of the first one, as radiotherapy tells by
+/// `offsets`; or nobody knows where.
+void place_by_offsets(std::vector<DicomFrame>& frames, const Numbers& offsets) {
+  const std::optional<DicomPlane> first = frames.front().plane;
+  const bool is_told = first && offsets.size() == frames.size();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i].plane = is_told ? first : std::nullopt;
+    if (is_told)
+      frames[i].plane->position = add(first->position, scale(first->normal, offsets[i] - offsets[0]));
+  }
+}
+
+std::vector<DicomFrame> frames_of(DcmItem& image, std::uint64_t file_bytes, const std::string& path) {
+  // Each has a header of its own where it is compressed, and a pixel where it is not.
+  constexpr std::uint64_t least_bytes = 8;
   const int count = integer_of(image, DCM_NumberOfFrames, 1);
-  if (count < 1 || count > most_frames)
+  const std::uint64_t pixels =
+      std::uint64_t(short_of(image, DCM_Rows, 0)) * std::uint64_t(short_of(image, DCM_Columns, 0));
+  if (count < 1 ||
+      std::uint64_t(count) > file_bytes / std::min(least_bytes, std::max<std::uint64_t>(1, pixels)))
     fail_dicom(path, fmt::format("its header speaks of {} frames; get the file again", count));
   const Frames frames(image);
   const Numbers dose = numbers_of(&image, DCM_DoseGridScaling, 1);
   std::vector<DicomFrame> found(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) {
-    DicomFrame& frame = found[std::size_t(i)];
-    const bool is_told = count == 1 || item_of(&image, DCM_PerFrameFunctionalGroupsSequence, i) != nullptr;
-    if (is_told)
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    DicomFrame& frame = found[i];
+    if (i == 0 || frames.own() == found.size())
       frame.plane = plane_of(frames.numbers(i, DCM_PlanePositionSequence, DCM_ImagePositionPatient, 3),
                              frames.numbers(i, DCM_PlaneOrientationSequence, DCM_ImageOrientationPatient, 6));
+    if (const Numbers time = frames.numbers(i, DCM_FrameContentSequence, DCM_TemporalPositionIndex, 1);
+        !time.empty())
+      frame.time = time[0];
     const Numbers slope = frames.numbers(i, DCM_PixelValueTransformationSequence, DCM_RescaleSlope, 1);
     const Numbers intercept = frames.numbers(i, DCM_PixelValueTransformationSequence, DCM_RescaleIntercept, 1);
     if (!slope.empty() && !intercept.empty() && slope[0] != 0) {
@@ -213,7 +263,27 @@ std::vector<DicomFrame> frames_of(DcmItem& image, const std::string& path) {
       frame.slope = dose[0];
     }
   }
+  if (found.size() > 1 && frames.own() != found.size())
+    place_by_offsets(found, numbers_of(&image, DCM_GridFrameOffsetVector, found.size()));
   return found;
+}
+
+/// Whether frames are said to follow each other in time.
+bool follow_in_time(DcmItem& image) {
+  DcmElement* pointer = nullptr;
+  DcmTagKey by;
+  if (image.findAndGetElement(DCM_FrameIncrementPointer, pointer).bad() || pointer->getTagVal(by).bad())
+    return false;
+  return by == DCM_FrameTime || by == DCM_FrameTimeVector;
+}
+
+std::array<double, 5> order_in_time(DcmItem& image) {
+  const auto first = [&](const DcmTagKey& tag) {
+    const Numbers number = numbers_of(&image, tag, 1);
+    return number.empty() ? 0.0 : number[0];
+  };
+  return {first(DCM_TemporalPositionIdentifier), first(DCM_AcquisitionNumber), first(DCM_TriggerTime),
+          first(DCM_EchoNumbers), first(DCM_InstanceNumber)};
 }
 
 Vec3 spacing_of(DcmItem& image) {
@@ -226,23 +296,26 @@ Vec3 spacing_of(DcmItem& image) {
   if (pixels.size() != 2) pixels = {1, 1};
   Numbers slices = first(DCM_SpacingBetweenSlices, 1);
   if (slices.empty()) slices = first(DCM_SliceThickness, 1);
-  if (const Numbers offsets = numbers_of(&image, DCM_GridFrameOffsetVector, 2); offsets.size() == 2)
-    slices = {offsets[1] - offsets[0]};
   // Between rows first, which is along y.
   return {believable_spacing(pixels[1]), believable_spacing(pixels[0]),
           believable_spacing(slices.empty() ? 1 : slices[0])};
 }
 
-DicomHeader header_of(DcmItem& image, const std::string& path) {
+DicomHeader header_of(DcmItem& image, std::uint64_t file_bytes, const std::string& path) {
   DicomHeader header;
   header.path = path;
+  header.file_bytes = file_bytes;
   header.series = text_of(image, DCM_SeriesInstanceUID);
+  header.image = text_of(image, DCM_SOPInstanceUID);
   header.description =
       fmt::format("series {} '{}'", text_of(image, DCM_SeriesNumber), text_of(image, DCM_SeriesDescription));
-  header.instance = integer_of(image, DCM_InstanceNumber, 0);
+  header.trouble = trouble_with(image);
+  if (!header.trouble.empty()) return header;
+  header.order = order_in_time(image);
+  header.frames_are_times = follow_in_time(image);
   header.size = {int(short_of(image, DCM_Columns, 0)), int(short_of(image, DCM_Rows, 0))};
-  header.type = checked_type(image, path);
-  header.frames = frames_of(image, path);
+  header.type = *scalar_type(bits_of(image));
+  header.frames = frames_of(image, file_bytes, path);
   checked_bytes({header.size[0], header.size[1], 1}, header.type, path);
   header.spacing = spacing_of(image);
   return header;
@@ -272,15 +345,28 @@ void fail_dicom(const std::string& path, const std::string& what) {
 }
 
 bool is_dicom(const std::string& path, const ReadableFiles& files) {
-  std::array<char, 4> mark{};
+  std::array<char, preamble_bytes + 4> begin{};
   const std::unique_ptr<ByteSource> file = open_file(path, files);
-  const std::size_t got = file->read(preamble_bytes, std::as_writable_bytes(std::span(mark)));
-  return got == mark.size() && std::string_view(mark.data(), mark.size()) == "DICM";
+  const std::size_t got = file->read(0, std::as_writable_bytes(std::span(begin)));
+  const std::string_view text(begin.data(), got);
+  if (text.substr(std::min(got, std::size_t(preamble_bytes))) == "DICM") return true;
+  // Elements of group 8 come first, little endian.
+  return has_extension(path, ".dcm") && text.substr(0, 2) == std::string_view("\x08\0", 2);
 }
 
 std::optional<DicomHeader> dicom_header(const std::string& path, const ReadableFiles& files) {
   return with_dcmtk(path, [&]() -> std::optional<DicomHeader> {
+    constexpr int deepest = 32;  // reports nest, images hardly
+    if (!sequences_nest_within(*open_file(path, files), deepest))
+      fail_dicom(path,
+                 fmt::format("its sequences lie more than {} deep in each other; get the file again", deepest));
     const OpenFile open(path, files);
+    DcmMetaInfo meta;
+    OFString syntax;
+    // All of the file would have to be inflated before anything is known of it.
+    if (meta.loadFile(open.name()).good() && meta.findAndGetOFString(DCM_TransferSyntaxUID, syntax).good() &&
+        trimmed(syntax.c_str()) == UID_DeflatedExplicitVRLittleEndianTransferSyntax)
+      fail_dicom(path, "it is deflated, which is not read; write it without (gdcmconv --raw)");
     DcmFileFormat file;
     const OFCondition read = file.loadFileUntilTag(open.name(), EXS_Unknown, EGL_noChange, DCM_MaxReadLength,
                                                    ERM_autoDetect, DCM_PixelData);
@@ -290,9 +376,7 @@ std::optional<DicomHeader> dicom_header(const std::string& path, const ReadableF
     const bool is_image =
         image.tagExists(DCM_Rows) && image.tagExists(DCM_Columns) && image.tagExists(DCM_BitsAllocated);
     if (!is_image) return std::nullopt;
-    DicomHeader header = header_of(image, path);
-    header.file_bytes = open.bytes();
-    return header;
+    return header_of(image, open.bytes(), path);
   });
 }
 
@@ -328,22 +412,34 @@ class DicomFrames::Decoder {
 
   void decode(int frame, std::span<std::byte> scalars) {
     const E_TransferSyntax syntax = file_.getDataset()->getOriginalXfer();
-    if (syntax == EXS_RLELossless)
-      return decode_dicom_rle(fragments_of(frame), bytes_per_scalar(header_.type), scalars);
-    if (syntax == EXS_JPEG2000LosslessOnly || syntax == EXS_JPEG2000) return read_jpeg2000(frame, scalars);
-    const bool is_jpeg = syntax >= EXS_JPEGProcess1 && syntax <= EXS_JPEGProcess14SV1;
-    if (is_jpeg && !leads_to_a_jpeg_frame(fragments_of(frame)))
-      throw std::runtime_error("its JPEG header is damaged");
+    if (DcmXfer(syntax).isEncapsulated()) {
+      const std::vector<std::byte> image = fragments_of(frame);
+      if (syntax == EXS_RLELossless) return decode_dicom_rle(image, bytes_per_scalar(header_.type), scalars);
+      if (syntax == EXS_JPEG2000LosslessOnly || syntax == EXS_JPEG2000) return read_jpeg2000(image, scalars);
+      if (syntax >= EXS_JPEGProcess1 && syntax <= EXS_JPEGProcess14SV1) check_jpeg(image);
+    }
     read_by_dcmtk(frame, scalars);
+  }
+
+  /// DCMTK decodes what is there into as many bytes as it finds fit.
+  void check_jpeg(std::span<const std::byte> image) const {
+    const std::optional<JpegFrame> found = first_jpeg_frame(image);
+    if (!found) throw std::runtime_error("its JPEG header is damaged");
+    constexpr unsigned bits_of_byte = 8;
+    if (found->components != 1 || found->columns != unsigned(header_.size[0]) ||
+        found->rows != unsigned(header_.size[1]) ||
+        (found->bits > bits_of_byte) != (bits_.allocated > bits_of_byte))
+      throw std::runtime_error(fmt::format("its JPEG image is one of {} x {} pixels of {} bits", found->columns,
+                                           found->rows, found->bits));
   }
 
   void read_by_dcmtk(int frame, std::span<std::byte> scalars) {
     buffer_.resize(scalars.size() + scalars.size() % 2);  // room is wanted for an even number of bytes
-    if (frame != next_frame_) fragment_ = 0;
-    next_frame_ = frame + 1;
     OFString colours;
+    // Of compressed pixels, where the frame begins: behind a table, or looked for.
+    Uint32 fragment = header_.frames.size() > 1 ? Uint32(frame) + 1 : 0;
     const OFCondition done = pixels_->getUncompressedFrame(
-        file_.getDataset(), Uint32(frame), fragment_, buffer_.data(), Uint32(buffer_.size()), colours, &cache_);
+        file_.getDataset(), Uint32(frame), fragment, buffer_.data(), Uint32(buffer_.size()), colours, &cache_);
     if (done.bad()) throw std::runtime_error(done.text());
     std::copy_n(buffer_.begin(), scalars.size(), scalars.begin());
     // Words of 16 bits were put into native order, and two of them are a pixel.
@@ -353,8 +449,8 @@ class DicomFrames::Decoder {
                          scalars.begin() + std::ptrdiff_t(at + 2));
   }
 
-  void read_jpeg2000(int frame, std::span<std::byte> scalars) {
-    const std::vector<std::int32_t> samples = decode_jpeg2000(fragments_of(frame), header_.size);
+  void read_jpeg2000(std::span<const std::byte> image, std::span<std::byte> scalars) const {
+    const std::vector<std::int32_t> samples = decode_jpeg2000(image, header_.size);
     const std::size_t scalar = bytes_per_scalar(header_.type);
     // The lowest bytes; those above the stored bits are made from them.
     static_assert(std::endian::native == std::endian::little);
@@ -400,8 +496,6 @@ class DicomFrames::Decoder {
   DcmFileCache cache_;
   DcmPixelData* pixels_ = nullptr;
   PixelBits bits_;
-  Uint32 fragment_ = 0;  ///< of compressed pixels: where `next_frame_` begins; 0: it is looked for
-  int next_frame_ = 0;
   std::vector<std::byte> buffer_;
 };
 

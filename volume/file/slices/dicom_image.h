@@ -22,11 +22,15 @@ namespace understudy::volume {
 /// Where an image lies in the patient, in mm (Image Plane Module, Plane Position and Plane Orientation macros).
 struct DicomPlane {
   Vec3 position;  ///< of the first pixel's middle
-  Vec3 normal;    ///< unit length: the direction of rows times that of columns
+  /// Of unit length: the direction in which columns follow each other, that of rows, and their cross product.
+  Vec3 rows;
+  Vec3 columns;
+  Vec3 normal;
 };
 
 struct DicomFrame {
   std::optional<DicomPlane> plane;
+  double time = 0;  ///< Temporal Position Index: a number that orders frames of one place
   /// A scalar s means slope * s + intercept (Modality LUT Module, Pixel Value Transformation macro, and the
   /// Dose Grid Scaling of radiotherapy).
   double slope = 1;
@@ -37,22 +41,27 @@ struct DicomHeader {
   std::string path;
   std::string series;       ///< Series Instance UID
   std::string description;  ///< for people
+  std::string image;        ///< SOP Instance UID
+  /// What comes first in time: Temporal Position Identifier, Acquisition Number, Trigger Time, Echo Number and
+  /// Instance Number, 0 where they are not told.
+  std::array<double, 5> order{};
+  bool frames_are_times = false;  ///< Frame Increment Pointer: frames follow each other in time
   std::array<int, 2> size{};
-  int instance = 0;  ///< Instance Number
   ScalarType type = ScalarType::u8;
   Vec3 spacing{1, 1, 1};  ///< in mm; the third one counts where frames have no planes
   std::vector<DicomFrame> frames;
   std::uint64_t file_bytes = 0;
+  std::string trouble;  ///< why its pixels cannot be read; empty: they can
 };
 
 /// Throws FileError.
 [[noreturn]] void fail_dicom(const std::string& path, const std::string& what);
 
-/// By the mark behind the preamble. Throws FileError where the file cannot be read.
+/// By the mark behind the preamble, or, where that is left out, by the name (.dcm) and the first element.
+/// Throws FileError where the file cannot be read.
 bool is_dicom(const std::string& path, const ReadableFiles& files);
 
-/// None where the file holds no image, as reports and directories do not. Throws FileError for damaged files,
-/// and for images that are no scalars.
+/// None where the file holds no image, as reports and directories do not. Throws FileError for damaged files.
 std::optional<DicomHeader> dicom_header(const std::string& path, const ReadableFiles& files);
 
 /// The file whose frames are read, which stays open for the next ones.

@@ -3,12 +3,21 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 namespace understudy::volume {
 
-/// Whether marker segments lead from its begin to that of a frame, each within `image`. DCMTK 3.6.7 looks for
-/// that one in damaged images without end.
-bool leads_to_a_jpeg_frame(std::span<const std::byte> image);
+/// What a frame header says.
+struct JpegFrame {
+  unsigned bits = 0;  ///< of a sample
+  unsigned rows = 0;
+  unsigned columns = 0;
+  unsigned components = 0;
+};
+
+/// That of the first frame. None unless marker segments lead to it from the image's begin, each within `image`:
+/// DCMTK 3.6.7 looks for it in damaged images without end.
+std::optional<JpegFrame> first_jpeg_frame(std::span<const std::byte> image);
 
 }  // namespace understudy::volume

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "volume/file/byte_source.h"
 #include "volume/file/file_error.h"
 #include "volume/file/series.h"
 #include "volume/file/slices/dicom_image.h"
@@ -47,6 +48,40 @@ bool is_regular(DIR* folder, const dirent& entry) {
   return ::fstatat(::dirfd(folder), entry.d_name, &about, 0) == 0 && S_ISREG(about.st_mode);
 }
 
+/// Whether two names are those of neighbouring slices: one run of digits counts on, and all else is the same.
+bool follows(const std::string& before, const std::string& name) {
+  std::size_t i = 0, k = 0;
+  int counted = 0;
+  const auto is_decimal = [](char c) { return c >= '0' && c <= '9'; };
+  while (i < before.size() && k < name.size()) {
+    if (!is_decimal(before[i]) || !is_decimal(name[k])) {
+      if (before[i++] != name[k++]) return false;
+      continue;
+    }
+    const std::size_t i_end = std::min(before.size(), before.find_first_not_of("0123456789", i));
+    const std::size_t k_end = std::min(name.size(), name.find_first_not_of("0123456789", k));
+    constexpr std::size_t most_digits = 18;
+    if (i_end - i > most_digits || k_end - k > most_digits) return false;
+    const long long a = std::stoll(before.substr(i, i_end - i)), b = std::stoll(name.substr(k, k_end - k));
+    if (b != a && b != a + 1) return false;
+    counted += b == a + 1 ? 1 : 0;
+    i = i_end;
+    k = k_end;
+  }
+  return i >= before.size() && k >= name.size() && counted == 1;
+}
+
+void check_that_they_follow(const std::vector<std::string>& files) {
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    const std::string before = std::filesystem::path(files[i - 1]).filename();
+    const std::string name = std::filesystem::path(files[i]).filename();
+    if (!follows(before, name))
+      fail_folder(files[i], fmt::format("does not follow {}: names of slices count on by one, and are the same "
+                                        "otherwise; put those of one volume into a folder of their own",
+                                        before));
+  }
+}
+
 }  // namespace
 
 bool is_folder(const std::string& path, const ReadableFiles& readable) {
@@ -79,10 +114,13 @@ std::unique_ptr<VolumeFile> open_slice_folder(const std::string& folder, int tim
       dicom.push_back(file);
     else if (is_tiff(file, readable))
       tiff.push_back(file);
+    else if (has_extension(file, ".tif") || has_extension(file, ".tiff"))
+      fail_folder(file, "is named as a TIFF file, but is none; get it again, or remove it");
   }
   if (!dicom.empty() && !tiff.empty())
     fail_folder(folder, fmt::format("{} DICOM and {} TIFF files lie in this folder; name a file of the volume",
                                     dicom.size(), tiff.size()));
+  check_that_they_follow(tiff);
   if (!tiff.empty()) return open_tiff_stack(folder, std::move(tiff), readable);
   if (dicom.empty())
     fail_folder(

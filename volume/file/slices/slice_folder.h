@@ -18,8 +18,8 @@ bool is_folder(const std::string& path, const ReadableFiles& readable = {});
 /// (slice_9 before slice_10). Throws FileError.
 std::vector<std::string> files_in_folder(const std::string& folder, const ReadableFiles& readable = {});
 
-/// The volume that a folder holds: a DICOM series, or TIFF files with one slice each. What is neither is passed
-/// over. Throws FileError, also where there are both, or several series.
+/// The volume that a folder holds: a DICOM series, or TIFF files with one slice each, whose names count on by
+/// one. What is neither is passed over. Throws FileError, also where there are both, or several series.
 std::unique_ptr<VolumeFile> open_slice_folder(const std::string& folder, int time_step,
                                               const ReadableFiles& readable = {});
 

@@ -13,6 +13,7 @@
 #include <new>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "volume/file/file_error.h"
 #include "volume/file/header_fields.h"
@@ -58,28 +59,36 @@ TiffDescription from_imagej(const std::string& text, const std::string& path) {
   const bool is_hyperstack =
       fields.contains("slices") || fields.contains("frames") || fields.contains("channels");
   found.slices = count_of(fields, is_hyperstack ? "slices" : "images", path);
+  found.channel_stride = 1;
+  found.slice_stride = found.channels;
+  found.step_stride = found.channels * found.slices;
   found.spacing[2] = believable_spacing(number_of(fields, "spacing").value_or(1));
   return found;
 }
 
-/// The attributes of the first element "Pixels".
-Fields pixels_of(const std::string& text, const std::string& path) {
-  struct Found {
-    bool there = false;
-    bool out_of_memory = false;
-    Fields fields;
-  } found;
+/// The attributes of the first element "Pixels", and of those that say which page holds which plane of it.
+struct OmePixels {
+  bool there = false;
+  bool out_of_memory = false;
+  Fields fields;
+  std::vector<Fields> pages;
+};
+
+OmePixels pixels_of(const std::string& text, const std::string& path) {
+  OmePixels found;
   const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr),
                                                                             &XML_ParserFree);
   if (!parser) throw std::bad_alloc();
   XML_SetUserData(parser.get(), &found);
   XML_SetStartElementHandler(parser.get(), [](void* user, const char* name, const char** words) {
-    auto* const pixels = static_cast<Found*>(user);
-    const std::string_view element(name);
-    if (pixels->there || element.substr(element.rfind(':') + 1) != "Pixels") return;
-    pixels->there = true;
+    auto* const pixels = static_cast<OmePixels*>(user);
+    const std::string_view whole(name), element = whole.substr(whole.rfind(':') + 1);
     try {  // no exception may pass through expat
-      for (; *words != nullptr; words += 2) pixels->fields[words[0]] = words[1];
+      Fields* to = nullptr;
+      if (element == "Pixels" && !pixels->there) to = &pixels->fields;
+      if (element == "TiffData" && pixels->there) to = &pixels->pages.emplace_back();
+      pixels->there = pixels->there || element == "Pixels";
+      for (; to != nullptr && *words != nullptr; words += 2) (*to)[words[0]] = words[1];
     } catch (const std::bad_alloc&) {
       pixels->out_of_memory = true;
     }
@@ -88,7 +97,7 @@ Fields pixels_of(const std::string& text, const std::string& path) {
     fail_tiff(path, fmt::format("its OME description is damaged: {}; get the file again",
                                 XML_ErrorString(XML_GetErrorCode(parser.get()))));
   if (found.out_of_memory) throw std::bad_alloc();
-  return found.fields;
+  return found;
 }
 
 /// In metres; units that are not known are taken for micrometres, which is OME's own.
@@ -101,13 +110,42 @@ double unit_of(const Fields& fields, const std::string& axis) {
 }
 
 TiffDescription from_ome(const std::string& text, const std::string& path) {
-  const Fields fields = pixels_of(text, path);
+  const OmePixels pixels = pixels_of(text, path);
+  const Fields& fields = pixels.fields;
   TiffDescription found;
   found.slices = count_of(fields, "SizeZ", path);
   found.time_steps = count_of(fields, "SizeT", path);
   found.channels = count_of(fields, "SizeC", path);
-  const auto order = fields.find("DimensionOrder");
-  found.steps_first = order != fields.end() && order->second.find('T') < order->second.find('Z');
+  // "XYZCT" or another order of the last three, the fastest first.
+  const auto told = fields.find("DimensionOrder");
+  const std::string order = told == fields.end() ? "XYZCT" : told->second;
+  std::int64_t stride = 1;
+  for (const char axis : order) {
+    if (axis == 'Z') {
+      found.slice_stride = stride;
+      stride *= found.slices;
+    } else if (axis == 'T') {
+      found.step_stride = stride;
+      stride *= found.time_steps;
+    } else if (axis == 'C') {
+      found.channel_stride = stride;
+      stride *= found.channels;
+    }
+  }
+  if (stride != found.images())
+    fail_tiff(path, fmt::format("its OME description has the order '{}'; get the file again", order));
+  for (const Fields& page : pixels.pages) {
+    if (!page.contains("IFD")) continue;
+    const auto number = [&](std::string_view name) { return number_of(page, name).value_or(0); };
+    const double expected = number("FirstZ") * double(found.slice_stride) +
+                            number("FirstT") * double(found.step_stride) +
+                            number("FirstC") * double(found.channel_stride);
+    if (number("IFD") != expected)
+      fail_tiff(path,
+                fmt::format("its page {} holds what should be in page {}: such an order is not read; write it "
+                            "again as OME-TIFF",
+                            number("IFD"), expected));
+  }
   const std::array<std::string, 3> axes{"PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ"};
   const bool all_told =
       std::ranges::all_of(axes, [&](const std::string& axis) { return fields.contains(axis); });

@@ -14,8 +14,11 @@ struct TiffDescription {
   std::int64_t slices = 0;  ///< 0: nothing is said, and each page is a slice
   std::int64_t time_steps = 1;
   std::int64_t channels = 1;
-  bool steps_first = false;  ///< pages of all time steps of a slice come before those of the next slice
-  Vec3 spacing{1, 1, 1};     ///< all of them in one unit
+  /// From a page to that of the next slice, time step, and channel.
+  std::int64_t slice_stride = 1;
+  std::int64_t step_stride = 0;
+  std::int64_t channel_stride = 0;
+  Vec3 spacing{1, 1, 1};  ///< all of them in one unit
 
   std::int64_t images() const { return slices * time_steps * channels; }
 };

@@ -140,6 +140,19 @@ Page page_of(TIFF* tiff, const std::string& path) {
           *type};
 }
 
+/// Microscopes write what other programs do not know of behind such a first page.
+void check_dialect(TIFF* tiff, const std::string& path) {
+  constexpr std::uint32_t metamorph = 33629, zeiss = 34412;
+  std::uint32_t count = 0;
+  const void* data = nullptr;
+  for (const auto& [tag, name] : {std::pair{metamorph, "MetaMorph (STK)"}, std::pair{zeiss, "Zeiss (LSM)"}})
+    if (TIFFGetField(tiff, tag, &count, &data) == 1)
+      fail_tiff(path, fmt::format("it is a stack of {}, which is not read; write it as OME-TIFF", name));
+  if (field<std::uint16_t>(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT) != ORIENTATION_TOPLEFT)
+    fail_tiff(path,
+              "its rows or columns go backwards (its orientation); write it with the first row at the top");
+}
+
 bool is_thumbnail(TIFF* tiff) {
   return (field<std::uint32_t>(tiff, TIFFTAG_SUBFILETYPE, 0) & FILETYPE_REDUCEDIMAGE) != 0;
 }
@@ -165,29 +178,29 @@ class TiffFile::Pages {
     const TiffDescription described = TIFFGetField(tiff_.get(), TIFFTAG_IMAGEDESCRIPTION, &words) == 1
                                           ? tiff_description(words, path)
                                           : TiffDescription();
+    check_dialect(tiff_.get(), path);
     find_pages(described);
     arrange(described);
     checked_bytes({first_.width, first_.height, header_.slices}, header_.type, path);
     header_.size = {int(first_.width), int(first_.height)};
-    header_.piece_bytes = std::size_t(std::max<tmsize_t>(
-        0, TIFFIsTiled(tiff_.get()) != 0 ? TIFFTileSize(tiff_.get()) : TIFFStripSize(tiff_.get())));
+    const tmsize_t piece =
+        TIFFIsTiled(tiff_.get()) != 0 ? TIFFTileSize(tiff_.get()) : TIFFStripSize(tiff_.get());
+    if (piece < 0 || piece > most_memory)
+      fail_tiff(path,
+                fmt::format("its strips or tiles have more than {} bytes; write smaller ones", most_memory));
+    header_.piece_bytes = std::size_t(piece);
   }
 
   const TiffHeader& header() const { return header_; }
   std::uint64_t bytes_read() const { return client_.file->bytes_from_file(); }
 
-  void read(int slice, int time_step, std::span<std::byte> scalars) {
+  void read(int slice, int time_step, int channel, std::span<std::byte> scalars) {
     const std::size_t number =
-        header_.steps_first ? std::size_t(slice) * std::size_t(header_.time_steps) + std::size_t(time_step)
-                            : std::size_t(time_step) * std::size_t(header_.slices) + std::size_t(slice);
+        std::size_t(slice * description_.slice_stride + time_step * description_.step_stride +
+                    channel * description_.channel_stride);
     if (contiguous_from_) return read_contiguous(number, scalars);
     if (TIFFSetSubDirectory(tiff_.get(), places_[number]) != 1)
       fail_tiff(header_.path, trouble("a page is damaged"));
-    if (page_of(tiff_.get(), header_.path) != first_)
-      fail_tiff(header_.path,
-                fmt::format("page {} has another size or type than the first one; write slices of one "
-                            "size and type",
-                            number));
     TIFFIsTiled(tiff_.get()) != 0 ? read_tiles(scalars) : read_strips(scalars);
   }
 
@@ -200,6 +213,14 @@ class TiffFile::Pages {
   void find_pages(const TiffDescription& described) {
     do {
       if (is_thumbnail(tiff_.get())) continue;
+      const Page page = page_of(tiff_.get(), header_.path);
+      if (places_.empty()) first_ = page;
+      if (page != first_)
+        fail_tiff(header_.path,
+                  fmt::format("page {} has {} x {} pixels of {}, where the first one has {} x {} of {}; "
+                              "write slices of one size and type",
+                              places_.size(), page.width, page.height, name_of(page.type), first_.width,
+                              first_.height, name_of(first_.type)));
       places_.push_back(TIFFCurrentDirOffset(tiff_.get()));
       if (places_.size() > most_pages) fail_tiff(header_.path, "it has too many pages for a volume; cut it");
     } while (TIFFReadDirectory(tiff_.get()) == 1);
@@ -207,7 +228,6 @@ class TiffFile::Pages {
     if (places_.empty()) fail_tiff(header_.path, "it has no image; give another file");
     if (TIFFSetSubDirectory(tiff_.get(), places_.front()) != 1)
       fail_tiff(header_.path, trouble("its first page is damaged"));
-    first_ = page_of(tiff_.get(), header_.path);
     header_.type = first_.type;
     // ImageJ writes stacks beyond 4 GB so: one page, and all others' pixels behind its own.
     std::uint64_t* offsets = nullptr;
@@ -220,8 +240,6 @@ class TiffFile::Pages {
   /// Which pages are slices, and which are time steps.
   void arrange(const TiffDescription& described) {
     const std::int64_t pages = contiguous_from_ ? described.images() : std::int64_t(places_.size());
-    if (described.channels > 1)
-      fail_tiff(header_.path, fmt::format("it has {} channels; extract one first", described.channels));
     if (described.slices > 0 && described.images() != pages)
       fail_tiff(header_.path,
                 fmt::format("it speaks of {} images, but has {}: the others may lie in other files; write "
@@ -235,7 +253,8 @@ class TiffFile::Pages {
       header_.spacing[0] = believable_spacing(1 / double(across));
       header_.spacing[1] = believable_spacing(1 / double(down));
     }
-    header_.steps_first = described.steps_first;
+    header_.channels = int(described.channels);
+    description_ = described;
     header_.time_steps = checked_time_steps(described.slices > 0 ? described.time_steps : 1, header_.path);
     const std::int64_t slices = described.slices > 0 ? described.slices : pages;
     header_.slices = int(std::min<std::int64_t>(slices, std::numeric_limits<int>::max()));
@@ -286,6 +305,7 @@ class TiffFile::Pages {
   Client client_;
   Tiff tiff_;
   TiffHeader header_;
+  TiffDescription description_;
   Page first_;
   std::vector<std::uint64_t> places_;
   std::optional<std::uint64_t> contiguous_from_;
@@ -300,8 +320,8 @@ const TiffHeader& TiffFile::header() const {
   return pages_->header();
 }
 
-void TiffFile::read(int slice, int time_step, std::span<std::byte> scalars) {
-  pages_->read(slice, time_step, scalars);
+void TiffFile::read(int slice, int time_step, int channel, std::span<std::byte> scalars) {
+  pages_->read(slice, time_step, channel, scalars);
 }
 
 std::uint64_t TiffFile::bytes_read() const {

@@ -23,7 +23,7 @@ struct TiffHeader {
   ScalarType type = ScalarType::u8;
   int slices = 1;
   int time_steps = 1;
-  bool steps_first = false;     ///< all time steps of a slice lie together, then those of the next one
+  int channels = 1;
   Vec3 spacing{1, 1, 1};        ///< as ImageJ or OME tell it
   std::size_t piece_bytes = 0;  ///< of the largest strip or tile, decoded
 };
@@ -39,7 +39,7 @@ class TiffFile {
 
   const TiffHeader& header() const;
   /// Fills `scalars` with those of one slice, tightly packed, in native byte order. Throws FileError.
-  void read(int slice, int time_step, std::span<std::byte> scalars);
+  void read(int slice, int time_step, int channel, std::span<std::byte> scalars);
   std::uint64_t bytes_read() const;
 
  private:

@@ -16,9 +16,10 @@ namespace {
 
 class PagesOfFile : public SliceImages {
  public:
-  PagesOfFile(std::unique_ptr<TiffFile> file, int time_step) : file_(std::move(file)), time_step_(time_step) {}
+  PagesOfFile(std::unique_ptr<TiffFile> file, int time_step, int channel)
+      : file_(std::move(file)), time_step_(time_step), channel_(channel) {}
 
-  void read(int z, std::span<std::byte> scalars) override { file_->read(z, time_step_, scalars); }
+  void read(int z, std::span<std::byte> scalars) override { file_->read(z, time_step_, channel_, scalars); }
   std::uint64_t bytes_read() const override { return file_->bytes_read(); }
   /// A strip or tile as it is compressed, and decoded.
   std::size_t memory_to_read() const override { return 2 * file_->header().piece_bytes; }
@@ -26,6 +27,7 @@ class PagesOfFile : public SliceImages {
  private:
   std::unique_ptr<TiffFile> file_;
   int time_step_;
+  int channel_;
 };
 
 class FilesOfStack : public SliceImages {
@@ -37,14 +39,14 @@ class FilesOfStack : public SliceImages {
     TiffFile file(files_[std::size_t(z)], readable_);
     const TiffHeader& header = file.header();
     if (header.size != first_.size || header.type != first_.type || header.slices != 1 ||
-        header.time_steps != 1)
+        header.time_steps != 1 || header.channels != 1)
       throw FileError(
           fmt::format("{}: TIFF: {} slices of {} x {} pixels of {}, where {} has one of {} x {} of {}; put "
                       "slices of one size "
                       "and type into a folder of their own",
                       header.path, header.slices, header.size[0], header.size[1], name_of(header.type),
                       first_.path, first_.size[0], first_.size[1], name_of(first_.type)));
-    file.read(0, 0, scalars);
+    file.read(0, 0, 0, scalars);
     bytes_read_ += file.bytes_read();
   }
   std::uint64_t bytes_read() const override { return bytes_read_; }
@@ -59,7 +61,8 @@ class FilesOfStack : public SliceImages {
 
 }  // namespace
 
-std::unique_ptr<VolumeFile> open_tiff(const std::string& path, int time_step, const ReadableFiles& readable) {
+std::unique_ptr<VolumeFile> open_tiff(const std::string& path, const FileHints& hints,
+                                      const ReadableFiles& readable) {
   auto file = std::make_unique<TiffFile>(path, readable);
   const TiffHeader& header = file->header();
   FileDescription description;
@@ -67,14 +70,17 @@ std::unique_ptr<VolumeFile> open_tiff(const std::string& path, int time_step, co
   description.spacing = header.spacing;
   description.type = header.type;
   description.time_steps = header.time_steps;
-  check_time_step(time_step, header.time_steps, path);
-  return volume_of_slices(description, std::make_unique<PagesOfFile>(std::move(file), time_step), path);
+  description.channels = header.channels;
+  check_time_step(hints.time_step, header.time_steps, path);
+  const int channel = checked_channel(hints.channel, header.channels, path);
+  return volume_of_slices(description, std::make_unique<PagesOfFile>(std::move(file), hints.time_step, channel),
+                          path);
 }
 
 std::unique_ptr<VolumeFile> open_tiff_stack(const std::string& folder, std::vector<std::string> files,
                                             const ReadableFiles& readable) {
   const TiffHeader first = TiffFile(files.front(), readable).header();
-  if (first.slices != 1 || first.time_steps != 1)
+  if (first.slices != 1 || first.time_steps != 1 || first.channels != 1)
     throw FileError(
         fmt::format("{}: TIFF: {} slices lie in this file, which is one of {} in its folder; name the "
                     "file instead of the folder",

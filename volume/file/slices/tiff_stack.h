@@ -11,8 +11,8 @@
 
 namespace understudy::volume {
 
-/// The pages of one file. Throws FileError.
-std::unique_ptr<VolumeFile> open_tiff(const std::string& path, int time_step,
+/// The pages of one file: of a time step and a channel. Throws FileError.
+std::unique_ptr<VolumeFile> open_tiff(const std::string& path, const FileHints& hints,
                                       const ReadableFiles& readable = {});
 
 /// `files` of one page, size and type, in the order of slices. `folder` is for messages. Throws FileError.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a command line says of a file of raw scalars.
+// What a command line says of a file: of raw scalars what these do not say themselves, and which channel is
+// meant.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,15 +12,16 @@
 
 namespace understudy::launcher {
 
-struct RawHints {
+struct FileHintOptions {
   std::vector<int> size;
   std::string type;
   bool big_endian = false;
+  std::optional<int> channel;
 };
 
-void add_raw_hints(CLI::App& subcommand, RawHints& hints);
+void add_file_hints(CLI::App& subcommand, FileHintOptions& hints);
 
 /// Throws std::invalid_argument for a type that there is not.
-volume::FileHints file_hints(const RawHints& hints);
+volume::FileHints file_hints(const FileHintOptions& hints);
 
 }  // namespace understudy::launcher

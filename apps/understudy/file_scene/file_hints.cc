@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/understudy/file_scene/raw_hints.h"
+#include "apps/understudy/file_scene/file_hints.h"
 
 #include <fmt/format.h>
 
@@ -8,13 +8,17 @@
 
 namespace understudy::launcher {
 
-void add_raw_hints(CLI::App& subcommand, RawHints& hints) {
+void add_file_hints(CLI::App& subcommand, FileHintOptions& hints) {
   subcommand.add_option("--volume-size", hints.size, "of raw scalars")->type_name("X Y Z")->expected(3);
   subcommand.add_option("--type", hints.type, "of raw scalars: u8, i8, … f64");
   subcommand.add_flag("--big-endian", hints.big_endian, "of raw scalars");
+  subcommand
+      .add_option("--channel", hints.channel, "of an image with several: which one is shown, counted from 0")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
 }
 
-volume::FileHints file_hints(const RawHints& hints) {
+volume::FileHints file_hints(const FileHintOptions& hints) {
   volume::FileHints told;
   if (!hints.size.empty()) {
     told.size.emplace();
@@ -27,6 +31,7 @@ volume::FileHints file_hints(const RawHints& hints) {
           "there is no type '{}'; give u8, i8, u16, i16, u32, i32, u64, i64, f32 or f64", hints.type));
   }
   if (hints.big_endian) told.big_endian = true;
+  told.channel = hints.channel;
   return told;
 }
 

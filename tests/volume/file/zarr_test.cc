@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+// Zarr arrays and OME-Zarr images: every codec, order and type, levels, channels and time steps.
+#include <blosc.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <lz4.h>
+#include <zstd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/volume/file/volume_files.h"
+#include "volume/file/chunks/chunk_codec.h"
+#include "volume/opening/open_volume.h"
+
+namespace understudy::volume::testing {
+namespace {
+
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr std::array<int, 3> array_size{37, 21, 11}, chunk_size{16, 8, 4};
+
+struct ZarrChoice {
+  ScalarType type = ScalarType::u16;
+  ChunkCodec codec = ChunkCodec::none;
+  bool big_endian = false;
+  bool first_axis_fastest = false;
+  char separator = '.';
+};
+
+std::string dtype_of(const ZarrChoice& choice) {
+  using enum ScalarType;
+  const char kind = choice.type == f32 || choice.type == f64                                              ? 'f'
+                    : choice.type == i8 || choice.type == i16 || choice.type == i32 || choice.type == i64 ? 'i'
+                                                                                                          : 'u';
+  return fmt::format("{}{}{}", choice.big_endian ? '>' : '<', kind, bytes_per_scalar(choice.type));
+}
+
+std::string compressor_of(ChunkCodec codec) {
+  switch (codec) {
+    case ChunkCodec::none:
+      return "null";
+    case ChunkCodec::blosc:
+      return R"({"id": "blosc", "cname": "lz4", "clevel": 5, "shuffle": 1})";
+    case ChunkCodec::zlib:
+      return R"({"id": "gzip", "level": 5})";
+    case ChunkCodec::zstd:
+      return R"({"id": "zstd", "level": 3})";
+    case ChunkCodec::lz4:
+      return R"({"id": "lz4", "acceleration": 1})";
+  }
+  return "";
+}
+
+Bytes packed(const Bytes& chunk, ChunkCodec codec, std::size_t scalar) {
+  Bytes out(chunk.size() + chunk.size() / 2 + 1024);
+  std::size_t bytes = 0;
+  switch (codec) {
+    case ChunkCodec::none:
+      return chunk;
+    case ChunkCodec::blosc:
+      bytes = std::size_t(
+          blosc_compress_ctx(5, 1, scalar, chunk.size(), chunk.data(), out.data(), out.size(), "lz4", 0, 1));
+      break;
+    case ChunkCodec::zlib:
+      return gzipped(chunk);
+    case ChunkCodec::zstd:
+      bytes = ZSTD_compress(out.data(), out.size(), chunk.data(), chunk.size(), 3);
+      break;
+    case ChunkCodec::lz4: {
+      const auto size = std::uint32_t(chunk.size());
+      std::memcpy(out.data(), &size, 4);
+      bytes = 4 + std::size_t(LZ4_compress_default(reinterpret_cast<const char*>(chunk.data()),
+                                                   reinterpret_cast<char*>(out.data()) + 4, int(chunk.size()),
+                                                   int(out.size() - 4)));
+      break;
+    }
+  }
+  out.resize(bytes);
+  return out;
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  std::filesystem::create_directories(path.parent_path());
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+void write_bytes(const std::filesystem::path& path, const Bytes& bytes) {
+  write_text(path, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+/// The chunk's scalars, those outside of the array 0, in the order that was chosen.
+Bytes chunk_of(const Bytes& scalars, const std::array<int, 3>& low, const ZarrChoice& choice) {
+  const std::size_t scalar = bytes_per_scalar(choice.type);
+  Bytes chunk(std::size_t(chunk_size[0] * chunk_size[1] * chunk_size[2]) * scalar);
+  std::size_t at = 0;
+  const auto put = [&](int x, int y, int z) {
+    const std::array<int, 3> place{low[0] + x, low[1] + y, low[2] + z};
+    if (place[0] < array_size[0] && place[1] < array_size[1] && place[2] < array_size[2]) {
+      const std::size_t from = (std::size_t(place[2] * array_size[1] + place[1]) * std::size_t(array_size[0]) +
+                                std::size_t(place[0])) *
+                               scalar;
+      std::copy_n(scalars.begin() + std::ptrdiff_t(from), scalar, chunk.begin() + std::ptrdiff_t(at));
+    }
+    at += scalar;
+  };
+  if (choice.first_axis_fastest) {
+    for (int x = 0; x < chunk_size[0]; ++x)
+      for (int y = 0; y < chunk_size[1]; ++y)
+        for (int z = 0; z < chunk_size[2]; ++z) put(x, y, z);
+  } else {
+    for (int z = 0; z < chunk_size[2]; ++z)
+      for (int y = 0; y < chunk_size[1]; ++y)
+        for (int x = 0; x < chunk_size[0]; ++x) put(x, y, z);
+  }
+  return choice.big_endian ? swapped(chunk, scalar) : chunk;
+}
+
+/// `before`: the chunk's numbers along axes before z, each with the separator behind it.
+void write_chunks(const std::filesystem::path& folder, const Bytes& scalars, const ZarrChoice& choice,
+                  const std::string& before = "") {
+  for (int z = 0; z * chunk_size[2] < array_size[2]; ++z)
+    for (int y = 0; y * chunk_size[1] < array_size[1]; ++y)
+      for (int x = 0; x * chunk_size[0] < array_size[0]; ++x)
+        write_bytes(folder / fmt::format("{}{}{}{}{}{}", before, z, choice.separator, y, choice.separator, x),
+                    packed(chunk_of(scalars, {x * chunk_size[0], y * chunk_size[1], z * chunk_size[2]}, choice),
+                           choice.codec, bytes_per_scalar(choice.type)));
+}
+
+std::string metadata(const ZarrChoice& choice, const std::string& shape_before = "",
+                     const std::string& chunks_before = "", const std::string& fill = "0") {
+  return fmt::format(
+      R"({{"zarr_format": 2, "shape": [{}{}, {}, {}], "chunks": [{}{}, {}, {}], "dtype": "{}", "order": "{}", )"
+      R"("fill_value": {}, "filters": null, "compressor": {}, "dimension_separator": "{}"}})",
+      shape_before, array_size[2], array_size[1], array_size[0], chunks_before, chunk_size[2], chunk_size[1],
+      chunk_size[0], dtype_of(choice), choice.first_axis_fastest ? "F" : "C", fill, compressor_of(choice.codec),
+      choice.separator);
+}
+
+TEST(ZarrArray, EveryTypeOrderAndCodec) {
+  using enum ScalarType;
+  for (const ScalarType type : {u8, i8, u16, i16, u32, i32, u64, i64, f32, f64})
+    for (const ChunkCodec codec :
+         {ChunkCodec::none, ChunkCodec::blosc, ChunkCodec::zlib, ChunkCodec::zstd, ChunkCodec::lz4})
+      for (const bool other_way : {false, true}) {
+        SCOPED_TRACE(fmt::format("{} {} {}", name_of(type), int(codec), other_way));
+        const TemporaryFolder folder;
+        const ZarrChoice choice{type, codec, other_way, other_way, other_way ? '/' : '.'};
+        const Bytes scalars = random_scalars(array_size, type, 1 + unsigned(type));
+        write_text(folder.file("a.zarr/.zarray"), metadata(choice));
+        write_chunks(folder.file("a.zarr"), scalars, choice);
+        const auto file = open_volume(folder.file("a.zarr"));
+        ASSERT_EQ(file->description().size, array_size);
+        ASSERT_EQ(file->description().type, type);
+        ASSERT_EQ(read_box(*file, whole(*file)), scalars);
+        std::mt19937 random(3);
+        for (int i = 0; i < 10; ++i) {
+          const TexelBox box = random_box(array_size, random);
+          Bytes expected(texels_in(box) * bytes_per_scalar(type));
+          copy_texels(box, bytes_per_scalar(type), whole(*file), scalars, box, expected);
+          ASSERT_EQ(read_box(*file, box), expected);
+        }
+      }
+}
+
+TEST(ZarrArray, ChunksThatAreNotThereHaveOneValue) {
+  const TemporaryFolder folder;
+  const ZarrChoice choice{.type = ScalarType::i16};
+  write_text(folder.file("a.zarr/.zarray"), metadata(choice, "", "", "-1000"));
+  const auto file = open_volume(folder.file("a.zarr"));
+  EXPECT_EQ(read_box(*file, whole(*file)),
+            bytes_of(std::vector<std::int16_t>(texels_in(whole(*file)), std::int16_t(-1000))));
+  EXPECT_EQ(file->bytes_read(), 0);
+}
+
+TEST(ZarrArray, SlicesInOrderReadEachChunkOnce) {
+  const TemporaryFolder folder;
+  const ZarrChoice choice{.codec = ChunkCodec::blosc};
+  const Bytes scalars = random_scalars(array_size, choice.type, 2);
+  write_text(folder.file("a.zarr/.zarray"), metadata(choice));
+  write_chunks(folder.file("a.zarr"), scalars, choice);
+  std::uint64_t bytes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.file("a.zarr")))
+    if (entry.path().filename() != ".zarray") bytes += entry.file_size();
+  const auto file = open_volume(folder.file("a.zarr"));
+  for (int z = 0; z < array_size[2]; ++z) read_box(*file, {{0, 0, z}, {array_size[0], array_size[1], z + 1}});
+  EXPECT_EQ(file->bytes_read(), bytes);
+}
+
+TEST(OmeZarr, LevelsChannelsTimeStepsAndSpacing) {
+  const TemporaryFolder folder;
+  const ZarrChoice choice{.codec = ChunkCodec::blosc, .separator = '/'};
+  write_text(folder.file("a.zarr/.zgroup"), R"({"zarr_format": 2})");
+  write_text(folder.file("a.zarr/.zattrs"), R"({"multiscales": [{"version": "0.4", "axes": [
+      {"name": "t", "type": "time"}, {"name": "c", "type": "channel"},
+      {"name": "z", "type": "space", "unit": "micrometer"}, {"name": "y", "type": "space", "unit": "nanometer"},
+      {"name": "x", "type": "space", "unit": "nanometer"}],
+    "coordinateTransformations": [{"type": "scale", "scale": [1, 1, 2, 1, 1]}], "datasets": [
+      {"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [1, 1, 0.5, 250, 200]}]},
+      {"path": "1", "coordinateTransformations": [{"type": "scale", "scale": [1, 1, 0.5, 500, 400]}]}]}]})");
+  for (const char* const level : {"0", "1"})
+    write_text(folder.file("a.zarr/") + level + "/.zarray", metadata(choice, "2, 3, ", "1, 2, "));
+  // Two channels share a chunk.
+  const auto scalars_of = [&](int level, int step, int channel) {
+    return random_scalars(array_size, choice.type, unsigned(100 * level + 10 * step + channel + 1));
+  };
+  for (int level = 0; level < 2; ++level)
+    for (int step = 0; step < 2; ++step)
+      for (int pair = 0; pair < 2; ++pair)
+        for (int z = 0; z * chunk_size[2] < array_size[2]; ++z)
+          for (int y = 0; y * chunk_size[1] < array_size[1]; ++y)
+            for (int x = 0; x * chunk_size[0] < array_size[0]; ++x) {
+              const std::array<int, 3> low{x * chunk_size[0], y * chunk_size[1], z * chunk_size[2]};
+              const Bytes chunk = joined(chunk_of(scalars_of(level, step, 2 * pair), low, choice),
+                                         chunk_of(scalars_of(level, step, 2 * pair + 1), low, choice));
+              write_bytes(folder.file(fmt::format("a.zarr/{}/{}/{}/{}/{}/{}", level, step, pair, z, y, x)),
+                          packed(chunk, choice.codec, 2));
+            }
+  for (int level = 0; level < 2; ++level)
+    for (int step = 0; step < 2; ++step)
+      for (int channel = 0; channel < 3; ++channel) {
+        FileHints hints = at_step(step);
+        hints.level = level;
+        hints.channel = channel;
+        const auto file = open_volume(folder.file("a.zarr"), hints);
+        EXPECT_EQ(file->description().time_steps, 2);
+        EXPECT_THAT(file->description().spacing,
+                    ElementsAre(DoubleNear(200 << level, 1e-9), DoubleNear(250 << level, 1e-9),
+                                DoubleNear(1000, 1e-9)));
+        EXPECT_EQ(read_box(*file, whole(*file)), scalars_of(level, step, channel));
+      }
+  EXPECT_THAT(trouble_with(folder.file("a.zarr")),
+              HasSubstr("it has 3 channels; choose one: --channel 0 to 2"));
+  FileHints beyond;
+  beyond.channel = 3;
+  EXPECT_THAT(trouble_with(folder.file("a.zarr"), beyond), HasSubstr("there is no channel 3 in it; it has 3"));
+  beyond.level = 2;
+  EXPECT_THAT(trouble_with(folder.file("a.zarr"), beyond), HasSubstr("it has no level 2; it has 2"));
+}
+
+TEST(ZarrArray, WhatIsNoVolumeSaysWhy) {
+  const TemporaryFolder folder;
+  const std::string name = folder.file("a.zarr");
+  const auto with = [&](const std::string& text) {
+    write_text(name + "/.zarray", text);
+    return trouble_with(name);
+  };
+  const auto changed = [](const std::string& from, const std::string& to) {
+    std::string text = metadata({});
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_THAT(with("{"), HasSubstr("it is no JSON object"));
+  EXPECT_THAT(with("{}"), HasSubstr("its metadata is damaged"));
+  EXPECT_THAT(with(changed("<u2", "<c8")), HasSubstr("elements of type <c8 are no scalars"));
+  EXPECT_THAT(with(changed("\"filters\": null", R"("filters": [{"id": "delta"}])")),
+              HasSubstr("went through the filters"));
+  EXPECT_THAT(with(changed("\"compressor\": null", R"("compressor": {"id": "bz2"})")),
+              HasSubstr("compressed by 'bz2' are not read"));
+  EXPECT_THAT(with(changed("[4, 8, 16]", "[4, 8]")), HasSubstr("it has 3 axes and chunks of 2"));
+  EXPECT_THAT(with(changed("[4, 8, 16]", "[4, 0, 16]")), HasSubstr("in chunks of 0"));
+  EXPECT_THAT(with(changed("[4, 8, 16]", "[65536, 65536, 16]")), HasSubstr("its chunks have 2 GiB or more"));
+  EXPECT_THAT(with(changed("[11, 21, 37]", "[11, 21, 37000000]")), HasSubstr("check its metadata"));
+  write_text(name + "/0.0.0", "short");
+  EXPECT_THAT(with(metadata({})),
+              HasSubstr("0.0.0: Zarr: its compressed bytes are damaged, or of another size"));
+  write_text(folder.file("b.zarr/zarr.json"), "{}");
+  EXPECT_THAT(trouble_with(folder.file("b.zarr")), HasSubstr("it is of version 3"));
+  write_text(folder.file("c.zarr/.zgroup"), "{}");
+  EXPECT_THAT(trouble_with(folder.file("c.zarr")), HasSubstr("it is a group without an image"));
+  write_text(folder.file("c.zarr/.zattrs"), R"({"multiscales": [{"datasets": [{"path": "../a.zarr"}]}]})");
+  EXPECT_THAT(trouble_with(folder.file("c.zarr")), HasSubstr("its level 0 lies elsewhere"));
+}
+
+TEST(ZarrArray, ChangedBytesNeverDoMoreHarmThanAnError) {
+  std::mt19937 random(20774);
+  int survived = 0, refused = 0;
+  for (const ChunkCodec codec : {ChunkCodec::blosc, ChunkCodec::zlib, ChunkCodec::zstd, ChunkCodec::lz4}) {
+    const TemporaryFolder folder;
+    const ZarrChoice choice{.codec = codec};
+    const Bytes scalars(std::size_t(array_size[0] * array_size[1] * array_size[2]) * 2, std::byte{3});
+    write_text(folder.file("a.zarr/.zarray"), metadata(choice));
+    write_chunks(folder.file("a.zarr"), scalars, choice);
+    for (const char* const name : {"a.zarr/.zarray", "a.zarr/0.1.1"}) {
+      const Bytes good = folder.read(name);
+      for (int i = 0; i < 150; ++i) {
+        folder.write(name, damaged(good, random));
+        const std::string trouble = trouble_with(folder.file("a.zarr"));
+        ++(trouble.empty() ? survived : refused);
+        if (!trouble.empty()) {
+          EXPECT_THAT(trouble, HasSubstr(folder.file("a.zarr")));
+        }
+      }
+      folder.write(name, good);
+    }
+  }
+  std::printf("%d were read, %d refused\n", survived, refused);
+  EXPECT_GT(refused, 100);
+}
+
+}  // namespace
+}  // namespace understudy::volume::testing

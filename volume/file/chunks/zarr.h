@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Volumes in Zarr folders.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "volume/file/readable_files.h"
+#include "volume/file/volume_file.h"
+
+namespace understudy::volume {
+
+/// An array, or the level of an OME-Zarr image, of a time step and a channel. Throws FileError.
+std::unique_ptr<VolumeFile> open_zarr(const std::string& folder, const FileHints& hints,
+                                      const ReadableFiles& files = {});
+
+}  // namespace understudy::volume

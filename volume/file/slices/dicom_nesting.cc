@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volume/file/slices/dicom_nesting.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace understudy::volume {
+
+namespace {
+
+constexpr std::uint32_t undefined_length = 0xFFFFFFFF, item = 0xFFFEE000, item_ends = 0xFFFEE00D,
+                        sequence_ends = 0xFFFEE0DD, pixel_data = 0x7FE00010;
+constexpr std::uint64_t no_end = std::numeric_limits<std::uint64_t>::max(), mark_end = 132;
+
+/// Bytes by their place, read in parts.
+class Window {
+ public:
+  explicit Window(ByteSource& file) : file_(file) {}
+
+  /// Zeros behind the end.
+  std::array<std::uint8_t, 12> at(std::uint64_t place) {
+    std::array<std::uint8_t, 12> bytes{};
+    if (place < first_ || place + bytes.size() > first_ + filled_) {
+      first_ = place;
+      filled_ = file_.read(place, std::as_writable_bytes(std::span(part_)));
+    }
+    const std::size_t here = std::size_t(place - first_),
+                      there = std::min(bytes.size(), filled_ - std::min(here, filled_));
+    std::copy_n(part_.begin() + std::ptrdiff_t(here), there, bytes.begin());
+    return bytes;
+  }
+
+ private:
+  ByteSource& file_;
+  std::array<std::uint8_t, std::size_t(1) << 14> part_{};
+  std::uint64_t first_ = 0;
+  std::size_t filled_ = 0;
+};
+
+struct Syntax {
+  bool explicit_types = false;
+  bool big_endian = false;
+};
+
+/// One element or delimiter.
+struct Element {
+  std::uint32_t tag = 0;
+  std::uint32_t length = 0;
+  std::size_t header_bytes = 8;
+  bool is_sequence = false;
+};
+
+std::uint32_t number(std::span<const std::uint8_t> bytes, bool big_endian) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    value = value << 8 | bytes[big_endian ? i : bytes.size() - 1 - i];
+  return value;
+}
+
+bool is_type(std::uint8_t a, std::uint8_t b) {
+  return a >= 'A' && a <= 'Z' && b >= 'A' && b <= 'Z';
+}
+
+Element element_at(Window& window, std::uint64_t place, const Syntax& syntax) {
+  const std::array<std::uint8_t, 12> bytes = window.at(place);
+  const auto part = [&](std::size_t first, std::size_t count) {
+    return number(std::span(bytes).subspan(first, count), syntax.big_endian);
+  };
+  Element found;
+  found.tag = part(0, 2) << 16 | part(2, 2);
+  found.length = part(4, 4);
+  const bool is_delimiter = found.tag == item || found.tag == item_ends || found.tag == sequence_ends;
+  if (is_delimiter) return found;
+  if (syntax.explicit_types && is_type(bytes[4], bytes[5])) {
+    const std::string type{char(bytes[4]), char(bytes[5])};
+    constexpr std::string_view long_types = "OB OD OF OL OV OW SQ SV UC UN UR UT UV";
+    const bool is_long = long_types.find(type) != std::string_view::npos;
+    found.length = is_long ? part(8, 4) : part(6, 2);
+    found.header_bytes = is_long ? 12 : 8;
+    found.is_sequence = type == "SQ";
+  }
+  // What it is may not be told; sequences begin with an item.
+  if (found.length == undefined_length) found.is_sequence = true;
+  if (!found.is_sequence && found.length >= 8) {
+    const std::array<std::uint8_t, 12> value = window.at(place + found.header_bytes);
+    const std::uint32_t first = number(std::span(value).first(2), syntax.big_endian) << 16 |
+                                number(std::span(value).subspan(2, 2), syntax.big_endian);
+    found.is_sequence = first == item;
+  }
+  return found;
+}
+
+/// That of the elements behind group 2, which says it.
+Syntax syntax_behind_meta_information(Window& window, std::uint64_t& place) {
+  Syntax syntax{.explicit_types = true, .big_endian = false};
+  std::string uid;
+  for (Element found = element_at(window, place, syntax);
+       found.tag >> 16 == 2 && found.length != undefined_length; found = element_at(window, place, syntax)) {
+    if (found.tag == 0x00020010)
+      for (std::uint32_t i = 0; i < std::min<std::uint32_t>(found.length, 64); ++i)
+        if (const std::uint8_t c = window.at(place + found.header_bytes + i)[0]; c != 0) uid += char(c);
+    place += found.header_bytes + found.length;
+  }
+  syntax.big_endian = uid == "1.2.840.10008.1.2.2";
+  const std::array<std::uint8_t, 12> first = window.at(place);
+  syntax.explicit_types = is_type(first[4], first[5]);
+  return syntax;
+}
+
+}  // namespace
+
+bool sequences_nest_within(ByteSource& file, int most) {
+  Window window(file);
+  const std::array<std::uint8_t, 12> mark = window.at(mark_end - 4);
+  std::uint64_t place =
+      std::string_view(reinterpret_cast<const char*>(mark.data()), 4) == "DICM" ? mark_end : 0;
+  const Syntax syntax = syntax_behind_meta_information(window, place);
+  const std::uint64_t size = file.size().value_or(0);
+  std::vector<std::uint64_t> ends;  // of the sequences and items that are open
+  while (place < size) {
+    while (!ends.empty() && ends.back() <= place) ends.pop_back();
+    const Element found = element_at(window, place, syntax);
+    if (found.tag == pixel_data && ends.empty()) return true;
+    place += found.header_bytes;
+    if (found.tag == item_ends || found.tag == sequence_ends) {
+      if (!ends.empty()) ends.pop_back();
+    } else if (found.is_sequence || found.tag == item) {
+      ends.push_back(found.length == undefined_length ? no_end : place + found.length);
+      if (ends.size() > 2 * std::size_t(most)) return false;
+    } else {
+      place += found.length;
+    }
+  }
+  return true;
+}
+
+}  // namespace understudy::volume

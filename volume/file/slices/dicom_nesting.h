@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// How deep sequences lie in each other in a DICOM file (part 5, chapter 7).
+#pragma once
+
+#include "volume/file/byte_source.h"
+
+namespace understudy::volume {
+
+/// Whether no sequence before the pixels lies in more than `most` others. DCMTK 3.6.7 calls itself for each of
+/// them, until its stack ends. Throws FileError where the file cannot be read.
+bool sequences_nest_within(ByteSource& file, int most);
+
+}  // namespace understudy::volume

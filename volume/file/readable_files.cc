@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/openat2.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -95,8 +96,26 @@ int ReadableFiles::open(const std::string& path) const {
 
 int ReadableFiles::open_if_there(const std::string& path) const {
   const int file = opened(path);
-  if (file < 0 && errno != ENOENT) fail_to_open(path);
+  if (file >= 0) return file;
+  if (errno != ENOENT) fail_to_open(path);
+  struct stat about {};
+  if (::lstat(path.c_str(), &about) == 0 && S_ISLNK(about.st_mode))
+    throw FileError(fmt::format("{}: is a link to a file that is not there; get the file", path));
   return file;
+}
+
+bool ReadableFiles::is_folder(const std::string& path) const {
+  if (folders_ && folders_->all.empty()) return false;
+  try {
+    const int file = opened(path);
+    if (file < 0) return false;
+    struct stat about {};
+    const bool is_folder = ::fstat(file, &about) == 0 && S_ISDIR(about.st_mode);
+    ::close(file);
+    return is_folder;
+  } catch (const FileError&) {
+    return false;  // whoever reads it says why
+  }
 }
 
 int ReadableFiles::open_in_folders(const std::string& path) const {

@@ -19,8 +19,10 @@ class ReadableFiles {
 
   /// A descriptor to read the file by. Throws FileError; of files elsewhere it does not tell whether they are.
   int open(const std::string& path) const;
-  /// The same; -1 where there is no such file.
+  /// The same; -1 where there is no such file. A link to one is an error.
   int open_if_there(const std::string& path) const;
+  /// Whether `path` is a folder that may be read.
+  bool is_folder(const std::string& path) const;
 
  private:
   struct Folders;

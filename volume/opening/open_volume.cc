@@ -24,7 +24,7 @@ namespace {
 
 std::unique_ptr<VolumeFile> opened(const std::string& name, const FileHints& hints,
                                    const ReadableFiles& files) {
-  const bool folder = !is_synthetic(name) && is_folder(name, files);
+  const bool folder = !is_synthetic(name) && files.is_folder(name);
   const bool in_levels = !is_synthetic(name) && !folder && is_hierarchical(name, files);
   if (in_levels) return open_level(name, hints.level, files);
   if (folder && is_zarr(name, files)) return open_zarr(name, hints, files);

@@ -415,8 +415,70 @@ TEST(DicomSeries, DeepSequencesAreRefused) {
         nested += little(8, 2) + little(0x1140, 2) + "SQ" + little(0, 2) + little(0xFFFFFFFF, 4) +
                   little(0xFFFE, 2) + little(0xE000, 2) + little(0xFFFFFFFF, 4);
     }
+    file.more.clear();
+    // Before the pixels, and behind them, where nobody looks.
     file.more[{8, 0x1140}] = nested;
-    EXPECT_THAT(trouble_with(folder.write("a.dcm", dicom_bytes(file))), HasSubstr("more than 32 deep"));
+    EXPECT_THAT(trouble_with(folder.write("a.dcm", dicom_bytes(file))),
+                HasSubstr("sequences more than 32 deep"));
+  }
+}
+
+TEST(DicomSeries, WhatLiesBehindThePixelsIsNotRead) {
+  const TemporaryFolder folder;
+  DicomFile file;
+  file.pixels = random_scalars({13, 7, 1}, ScalarType::i16, 5);
+  using dicom::little;
+  std::string nested;
+  for (int i = 0; i < 100'000; ++i)
+    nested += little(0xFFFA, 2) + little(0xFFFA, 2) + "SQ" + little(0, 2) + little(0xFFFFFFFF, 4) +
+              little(0xFFFE, 2) + little(0xE000, 2) + little(0xFFFFFFFF, 4);
+  folder.write("a.dcm", dicom_bytes(file) + nested);
+  const auto volume = open_volume(folder.file("a.dcm"));
+  EXPECT_EQ(read_box(*volume, whole(*volume)), file.pixels);
+}
+
+TEST(DicomSeries, ElementsOfNoTypeAreRefused) {
+  const TemporaryFolder folder;
+  DicomFile file;
+  file.pixels.resize(2 * 13 * 7);
+  for (const std::string& type : {std::string("ZZ"), std::string("\1\0", 2)}) {
+    file.more[{8, 0x1140}] = dicom::little(8, 2) + dicom::little(0x1140, 2) + type + std::string("\0\x10", 2);
+    EXPECT_THAT(trouble_with(folder.write("a.dcm", dicom_bytes(file))), HasSubstr("elements of no type"));
+  }
+}
+
+/// Cosines of three digits, as some scanners write them; and rows that are shifted by less than half a pixel.
+TEST(DicomSeries, DirectionsAndPositionsMayBeRounded) {
+  const TemporaryFolder folder;
+  const Bytes scalars = random_scalars(series_size, ScalarType::i16, 3);
+  for (int z = 0; z < series_size[2]; ++z) {
+    DicomFile file = slice_file(scalars, z, {0.707, -0.707, 0});
+    file.orientation = {0.707, 0.707, 0, 0, 0, -1};
+    file.position[2] += 0.1 * (z % 2);
+    folder.write(std::to_string(z), dicom_bytes(file));
+  }
+  const auto file = open_volume(folder.file(""));
+  EXPECT_EQ(file->description().size, series_size);
+}
+
+TEST(DicomSeries, StepsThatMeanTheirValuesDifferentlyAreAllFloats) {
+  const TemporaryFolder folder;
+  const Bytes scalars = random_scalars(series_size, ScalarType::i16, 3);
+  for (int z = 0; z < series_size[2]; ++z)
+    for (int t = 0; t < 2; ++t) {
+      DicomFile file = slice_file(scalars, z);
+      file.slope = 1 + t;
+      file.instance = 100 * t + z;
+      folder.write(std::to_string(2 * z + t), dicom_bytes(file));
+    }
+  for (int t = 0; t < 2; ++t) {
+    const auto file = open_volume(folder.file(""), at_step(t));
+    ASSERT_EQ(file->description().type, ScalarType::f32);
+    std::int16_t stored = 0;
+    float value = 0;
+    std::memcpy(&stored, scalars.data(), 2);
+    std::memcpy(&value, read_box(*file, {{0, 0, 0}, {1, 1, 1}}).data(), 4);
+    EXPECT_EQ(value, float((1 + t) * stored));
   }
 }
 

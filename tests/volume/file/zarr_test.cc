@@ -190,6 +190,50 @@ TEST(ZarrArray, SlicesInOrderReadEachChunkOnce) {
   EXPECT_EQ(file->bytes_read(), bytes);
 }
 
+TEST(ZarrArray, FoldersThatNobodyTellsOfAreFound) {
+  const TemporaryFolder folder;
+  const ZarrChoice choice{.separator = '/'};
+  const Bytes scalars = random_scalars(array_size, choice.type, 2);
+  std::string text = metadata(choice);
+  const std::string told = R"(, "dimension_separator": "/")";
+  write_text(folder.file("a.zarr/.zarray"), text.erase(text.find(told), told.size()));
+  write_chunks(folder.file("a.zarr"), scalars, choice);
+  const auto file = open_volume(folder.file("a.zarr"));
+  EXPECT_EQ(read_box(*file, whole(*file)), scalars);
+}
+
+TEST(ZarrArray, MemoryIsThatOfALayerOfChunks) {
+  const TemporaryFolder folder;
+  const ZarrChoice choice{};
+  write_text(folder.file("a.zarr/.zarray"), metadata(choice));
+  write_chunks(folder.file("a.zarr"), random_scalars(array_size, choice.type, 2), choice);
+  const auto file = open_volume(folder.file("a.zarr"));
+  const std::size_t chunk = std::size_t(chunk_size[0] * chunk_size[1] * chunk_size[2]) * 2;
+  EXPECT_GE(file->memory_to_read(whole(*file)), 10 * chunk);  // 3 x 3, and one compressed
+  EXPECT_LE(file->memory_to_read(whole(*file)), 12 * chunk);
+}
+
+TEST(ZarrArray, DimensionsHaveTheNamesThatTheyAreGiven) {
+  const TemporaryFolder folder;
+  const ZarrChoice choice{};
+  const Bytes scalars = random_scalars(array_size, choice.type, 2);
+  write_text(folder.file("a.zarr/.zarray"), metadata(choice));
+  write_text(folder.file("a.zarr/.zattrs"), R"({"_ARRAY_DIMENSIONS": ["time", "y", "x"]})");
+  write_chunks(folder.file("a.zarr"), scalars, choice);
+  const auto file = open_volume(folder.file("a.zarr"), at_step(4));
+  EXPECT_EQ(file->description().time_steps, array_size[2]);
+  Bytes expected(std::size_t(array_size[0] * array_size[1]) * 2);
+  std::copy_n(scalars.begin() + 4 * std::ptrdiff_t(expected.size()), expected.size(), expected.begin());
+  EXPECT_EQ(read_box(*file, whole(*file)), expected);
+}
+
+TEST(ZarrArray, ChunksThatWereNotFetchedAreAnError) {
+  const TemporaryFolder folder;
+  write_text(folder.file("a.zarr/.zarray"), metadata({}));
+  std::filesystem::create_symlink("../annex/key", folder.file("a.zarr/0.0.0"));
+  EXPECT_THAT(trouble_with(folder.file("a.zarr")), HasSubstr("is a link to a file that is not there"));
+}
+
 TEST(OmeZarr, LevelsChannelsTimeStepsAndSpacing) {
   const TemporaryFolder folder;
   const ZarrChoice choice{.codec = ChunkCodec::blosc, .separator = '/'};
@@ -256,9 +300,11 @@ TEST(ZarrArray, WhatIsNoVolumeSaysWhy) {
   EXPECT_THAT(with("{}"), HasSubstr("its metadata is damaged"));
   EXPECT_THAT(with(changed("<u2", "<c8")), HasSubstr("elements of type <c8 are no scalars"));
   EXPECT_THAT(with(changed("\"filters\": null", R"("filters": [{"id": "delta"}])")),
-              HasSubstr("went through the filters"));
+              HasSubstr("went through filters"));
   EXPECT_THAT(with(changed("\"compressor\": null", R"("compressor": {"id": "bz2"})")),
               HasSubstr("compressed by 'bz2' are not read"));
+  std::string deep(100'000, '[');
+  EXPECT_NE(with(changed("\"<u2\"", deep + std::string(100'000, ']'))), "");
   EXPECT_THAT(with(changed("[4, 8, 16]", "[4, 8]")), HasSubstr("it has 3 axes and chunks of 2"));
   EXPECT_THAT(with(changed("[4, 8, 16]", "[4, 0, 16]")), HasSubstr("in chunks of 0"));
   EXPECT_THAT(with(changed("[4, 8, 16]", "[65536, 65536, 16]")), HasSubstr("its chunks have 2 GiB or more"));
@@ -271,7 +317,7 @@ TEST(ZarrArray, WhatIsNoVolumeSaysWhy) {
   write_text(folder.file("c.zarr/.zgroup"), "{}");
   EXPECT_THAT(trouble_with(folder.file("c.zarr")), HasSubstr("it is a group without an image"));
   write_text(folder.file("c.zarr/.zattrs"), R"({"multiscales": [{"datasets": [{"path": "../a.zarr"}]}]})");
-  EXPECT_THAT(trouble_with(folder.file("c.zarr")), HasSubstr("its level 0 lies elsewhere"));
+  EXPECT_THAT(trouble_with(folder.file("c.zarr")), HasSubstr("one of its levels lies elsewhere"));
 }
 
 TEST(ZarrArray, ChangedBytesNeverDoMoreHarmThanAnError) {
@@ -298,6 +344,7 @@ TEST(ZarrArray, ChangedBytesNeverDoMoreHarmThanAnError) {
   }
   std::printf("%d were read, %d refused\n", survived, refused);
   EXPECT_GT(refused, 100);
+  EXPECT_GT(survived, 50);
 }
 
 }  // namespace

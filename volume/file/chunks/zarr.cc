@@ -69,18 +69,24 @@ class ZarrVolume : public VolumeFile {
       low[k] = int(box.low[k] / axes_[k].chunk);
       high[k] = int((box.high[k] - 1) / axes_[k].chunk) + 1;
     }
-    // Those of the layers before are not asked for again.
-    std::erase_if(decoded_, [&](const auto& entry) { return entry.first[2] < low[2]; });
-    for (int z = low[2]; z < high[2]; ++z)
+    for (int z = low[2]; z < high[2]; ++z) {
+      // Those of the layers before are not asked for again.
+      std::erase_if(decoded_, [&](const auto& entry) { return entry.first[2] < z; });
       for (int y = low[1]; y < high[1]; ++y)
         for (int x = low[0]; x < high[0]; ++x) copy_chunk({x, y, z}, box, scalars);
+    }
   }
 
   std::uint64_t bytes_read() const override { return bytes_read_; }
   std::size_t memory_to_read(const TexelBox& box) const override {
-    std::size_t chunks = 2;  // one as it is compressed; and layers begin within the box
-    for (std::size_t k = 0; k < 2; ++k) chunks *= std::size_t((box.high[k] - box.low[k]) / axes_[k].chunk) + 2;
-    return chunks * chunk_scalars_ * scalar_bytes();
+    // Those of one layer, and one as it is compressed.
+    std::size_t chunks = 1;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::int64_t in_all = (axes_[k].length + axes_[k].chunk - 1) / axes_[k].chunk;
+      chunks *= std::size_t(std::min<std::int64_t>(in_all, (box.high[k] - box.low[k]) / axes_[k].chunk + 2));
+    }
+    constexpr std::size_t entry_bytes = 128;
+    return (chunks + 1) * (chunk_scalars_ * scalar_bytes() + entry_bytes);
   }
 
  private:
@@ -189,6 +195,19 @@ class ZarrVolume : public VolumeFile {
   std::uint64_t bytes_read_ = 0;
 };
 
+/// Each is a file of its own.
+void check_chunks(const ZarrArray& array, const std::string& folder) {
+  constexpr double least_scalars = 512, most_chunks = 1 << 20;
+  double chunks = 1, scalars = 1;
+  for (std::size_t axis = 0; axis < array.shape.size(); ++axis) {
+    chunks *= double(array.shape[axis]) / double(array.chunks[axis]);
+    scalars *= double(array.chunks[axis]);
+  }
+  if (scalars < least_scalars && chunks > most_chunks)
+    throw FileError(fmt::format("{}: Zarr: it has {:.0f} chunks of {} scalars; write larger ones", folder,
+                                chunks, scalars));
+}
+
 void check_axes(const ZarrImage& image, const ZarrArray& array, const std::string& folder) {
   std::vector<ZarrAxis> sorted = image.axes;
   std::ranges::sort(sorted);
@@ -206,6 +225,7 @@ std::unique_ptr<VolumeFile> open_zarr(const std::string& folder, const FileHints
   ZarrImage image = zarr_image(folder, hints.level, files);
   ZarrArray array = zarr_array(image.folder, files);
   check_axes(image, array, folder);
+  check_chunks(array, folder);
   std::array<std::int64_t, 3> size{1, 1, 1};
   std::int64_t steps = 1, channels = 1;
   for (std::size_t axis = 0; axis < image.axes.size(); ++axis) {

@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_metadata_bytes = std::size_t(1) << 24;
+constexpr std::size_t most_metadata_bytes = std::size_t(1) << 20;
 constexpr std::size_t most_zarr_axes = 5;
 
 [[noreturn]] void fail_zarr(const std::string& path, const std::string& what) {
@@ -61,7 +61,7 @@ ScalarType type_of(const json& dtype, const std::string& path) {
       {"u1", ScalarType::u8},  {"i1", ScalarType::i8},  {"u2", ScalarType::u16}, {"i2", ScalarType::i16},
       {"u4", ScalarType::u32}, {"i4", ScalarType::i32}, {"u8", ScalarType::u64}, {"i8", ScalarType::i64},
       {"f4", ScalarType::f32}, {"f8", ScalarType::f64}};
-  const std::string text = dtype.is_string() ? dtype.get<std::string>() : dtype.dump();
+  const std::string text = dtype.is_string() ? dtype.get<std::string>() : "with fields";
   const auto found = names.find(text.size() == 3 ? text.substr(1) : "");
   if (found == names.end())
     fail_zarr(path,
@@ -117,26 +117,40 @@ struct NamedAxis {
 };
 
 /// Versions before 0.4 have names alone, the first ones none.
-std::vector<NamedAxis> axes_of(const json& scales, const std::string& path) {
+std::vector<NamedAxis> axes_of(const json& scales, std::size_t count, const std::string& path) {
   static const std::map<std::string, ZarrAxis> names{{"t", ZarrAxis::time},
                                                      {"c", ZarrAxis::channel},
                                                      {"z", ZarrAxis::z},
                                                      {"y", ZarrAxis::y},
                                                      {"x", ZarrAxis::x}};
-  static const std::map<std::string, double> units{{"angstrom", 1e-10},  {"nanometer", 1e-9},
-                                                   {"micrometer", 1e-6}, {"millimeter", 1e-3},
-                                                   {"centimeter", 1e-2}, {"meter", 1}};
-  if (!scales.contains("axes"))
-    return {{ZarrAxis::time}, {ZarrAxis::channel}, {ZarrAxis::z}, {ZarrAxis::y}, {ZarrAxis::x}};
+  static const std::map<std::string, double> units{
+      {"angstrom", 1e-10},  {"picometer", 1e-12}, {"nanometer", 1e-9}, {"micrometer", 1e-6},
+      {"millimeter", 1e-3}, {"centimeter", 1e-2}, {"meter", 1}};
+  if (!scales.contains("axes")) {
+    const std::vector<NamedAxis> all{
+        {ZarrAxis::time}, {ZarrAxis::channel}, {ZarrAxis::z}, {ZarrAxis::y}, {ZarrAxis::x}};
+    return {all.end() - std::ptrdiff_t(std::min(count, all.size())), all.end()};
+  }
+  if (scales.at("axes").size() > most_zarr_axes)
+    fail_zarr(path, fmt::format("it has {} axes; up to {} are read", scales.at("axes").size(), most_zarr_axes));
   std::vector<NamedAxis> axes;
+  double told = 0;  // the unit of the other axes stands for one that is left out
   for (const json& axis : scales.at("axes")) {
     const auto name = axis.is_string() ? axis.get<std::string>() : axis.at("name").get<std::string>();
     const auto found = names.find(name);
     if (found == names.end())
       fail_zarr(path, fmt::format("it has an axis '{}'; t, c, z, y and x are read", name));
-    const auto unit = units.find(axis.is_object() ? axis.value("unit", "micrometer") : "micrometer");
-    axes.push_back({found->second, unit == units.end() ? 1e-6 : unit->second});
+    axes.push_back({found->second, 0});
+    const bool has_unit = axis.is_object() && axis.contains("unit") && axis.at("unit").is_string();
+    if (found->second < ZarrAxis::z || !has_unit) continue;
+    const auto unit = units.find(axis.at("unit").get<std::string>());
+    if (unit == units.end())
+      fail_zarr(path, fmt::format("its axis {} is in '{}', which is not known; give it in micrometers", name,
+                                  axis.at("unit").get<std::string>()));
+    axes.back().metres = told = unit->second;
   }
+  for (NamedAxis& axis : axes)
+    if (axis.metres == 0) axis.metres = told == 0 ? 1 : told;
   return axes;
 }
 
@@ -149,31 +163,65 @@ std::vector<double> scale_in(const json& entry) {
   return {};
 }
 
-ZarrImage image_of(const json& scales, const std::string& folder, int level) {
+/// Of a dataset of the image in `folder`.
+std::string folder_of(const json& dataset, const std::string& folder) {
+  const std::filesystem::path below = dataset.at("path").get<std::string>();
+  if (below.is_absolute() || std::ranges::find(below, "..") != below.end())
+    fail_zarr(folder,
+              fmt::format("one of its levels lies elsewhere ({}); put it into this folder", below.string()));
+  return file_in(folder, below.string());
+}
+
+ZarrImage image_of(const json& scales, const std::string& folder, int level, const ReadableFiles& files) {
   const json& datasets = scales.at("datasets");
   if (level < 0 || std::size_t(level) >= datasets.size())
     fail_zarr(folder, fmt::format("it has no level {}; it has {}, counted from 0", level, datasets.size()));
   const json& dataset = datasets.at(std::size_t(level));
-  const std::filesystem::path below = dataset.at("path").get<std::string>();
-  if (below.is_absolute() || std::ranges::find(below, "..") != below.end())
-    fail_zarr(folder,
-              fmt::format("its level {} lies elsewhere ({}); put it into this folder", level, below.string()));
   ZarrImage image;
-  image.folder = file_in(folder, below.string());
-  image.levels = int(datasets.size());
-  const std::vector<NamedAxis> axes = axes_of(scales, folder);
+  image.folder = folder_of(dataset, folder);
+  const std::vector<std::int64_t> shape = zarr_array(image.folder, files).shape;
+  const std::vector<NamedAxis> axes = axes_of(scales, shape.size(), folder);
   const std::vector<double> own = scale_in(dataset), common = scale_in(scales);
-  double unit = 0;
-  for (std::size_t i = axes.size(); i > 0; --i) {
-    const NamedAxis& axis = axes[i - 1];
-    image.axes.insert(image.axes.begin(), axis.axis);
-    if (axis.axis < ZarrAxis::z) continue;
-    if (unit == 0) unit = axis.metres;  // x is the last axis
-    const double length = (i <= own.size() ? own[i - 1] : 1) * (i <= common.size() ? common[i - 1] : 1);
-    image.spacing[std::size_t(ZarrAxis::x) - std::size_t(axis.axis)] =
-        believable_spacing(length * axis.metres / unit);
+  // The first versions tell no scales: a level is as large as the finest one.
+  std::vector<std::int64_t> finest = shape;
+  if (own.empty() && level > 0) finest = zarr_array(folder_of(datasets.at(0), folder), files).shape;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    image.axes.push_back(axes[i].axis);
+    if (axes[i].axis < ZarrAxis::z || i >= shape.size() || i >= finest.size()) continue;
+    const double scale = i < own.size() ? own[i] : double(finest[i]) / double(shape[i]);
+    image.spacing[std::size_t(ZarrAxis::x) - std::size_t(axes[i].axis)] =
+        scale * (i < common.size() ? common[i] : 1) * axes[i].metres;
+  }
+  // In the unit of the x axis, which is as good as any.
+  const auto x = std::ranges::find(axes, ZarrAxis::x, &NamedAxis::axis);
+  for (const NamedAxis& axis : axes) {
+    if (axis.axis < ZarrAxis::z || x == axes.end()) continue;
+    double& spacing = image.spacing[std::size_t(ZarrAxis::x) - std::size_t(axis.axis)];
+    spacing = believable_spacing(spacing / x->metres);
   }
   return image;
+}
+
+/// Of an array that is no image: as its names say, or the last of t, c, z, y, x.
+std::vector<ZarrAxis> axes_of_array(const json& attributes, std::size_t count, const std::string& folder) {
+  static const std::map<std::string, ZarrAxis> names{
+      {"t", ZarrAxis::time}, {"time", ZarrAxis::time}, {"c", ZarrAxis::channel}, {"channel", ZarrAxis::channel},
+      {"z", ZarrAxis::z},    {"y", ZarrAxis::y},       {"x", ZarrAxis::x}};
+  if (attributes.is_object() && attributes.contains("_ARRAY_DIMENSIONS")) {
+    std::vector<ZarrAxis> axes;
+    for (const json& name : attributes.at("_ARRAY_DIMENSIONS")) {
+      const auto found = names.find(name.get<std::string>());
+      if (found == names.end() || axes.size() >= most_zarr_axes)
+        fail_zarr(folder,
+                  fmt::format("it has a dimension '{}'; t, c, z, y and x are read", name.get<std::string>()));
+      axes.push_back(found->second);
+    }
+    return axes;
+  }
+  std::vector<ZarrAxis> axes{ZarrAxis::time, ZarrAxis::channel, ZarrAxis::z, ZarrAxis::y, ZarrAxis::x};
+  axes.erase(axes.begin(), axes.end() - std::ptrdiff_t(std::min(count, axes.size())));
+  if (count == 4) axes.front() = ZarrAxis::time;  // as files of other formats have it
+  return axes;
 }
 
 }  // namespace
@@ -186,20 +234,28 @@ bool is_zarr(const std::string& folder, const ReadableFiles& files) {
 
 ZarrImage zarr_image(const std::string& folder, int level, const ReadableFiles& files) {
   return with_json(folder, [&]() -> ZarrImage {
-    if (open_file_if_there(file_in(folder, "zarr.json"), files))
+    const bool is_array = open_file_if_there(file_in(folder, ".zarray"), files) != nullptr;
+    if (!is_array && !open_file_if_there(file_in(folder, ".zgroup"), files))
       fail_zarr(folder, "it is of version 3, of which version 2 is read; write it with zarr_format=2");
     const json attributes = json_in(folder, ".zattrs", files);
     if (attributes.is_object() && attributes.contains("multiscales"))
-      return image_of(attributes.at("multiscales").at(0), folder, level);
-    if (!open_file_if_there(file_in(folder, ".zarray"), files))
-      fail_zarr(folder, "it is a group without an image; give an array in it, or an OME-Zarr image");
+      return image_of(attributes.at("multiscales").at(0), folder, level, files);
+    if (!is_array)
+      fail_zarr(
+          folder,
+          "it is a group without an image; give an array or an OME-Zarr image in it, such as the folder 0");
     if (level != 0) fail_zarr(folder, fmt::format("an array alone has no level {}; leave out --level", level));
+    // An array of an image does not know its axes.
+    const std::filesystem::path above = std::filesystem::path(folder).lexically_normal();
+    const std::string parent = (above.has_filename() ? above : above.parent_path()).parent_path().string();
+    if (!parent.empty()) {
+      const json image = json_in(parent, ".zattrs", files);
+      if (image.is_object() && image.contains("multiscales"))
+        fail_zarr(folder, fmt::format("it is a level of the image {}; give that folder, and --level", parent));
+    }
     ZarrImage image;
     image.folder = folder;
-    const std::size_t count = zarr_array(folder, files).shape.size();
-    const std::vector<ZarrAxis> last{ZarrAxis::time, ZarrAxis::channel, ZarrAxis::z, ZarrAxis::y, ZarrAxis::x};
-    image.axes.assign(last.end() - std::ptrdiff_t(std::min(count, last.size())), last.end());
-    if (count == 4) image.axes.front() = ZarrAxis::time;  // as files of other formats have it
+    image.axes = axes_of_array(attributes, zarr_array(folder, files).shape.size(), folder);
     return image;
   });
 }
@@ -215,10 +271,11 @@ ZarrArray zarr_array(const std::string& folder, const ReadableFiles& files) {
     array.type = type_of(read.at("dtype"), path);
     array.big_endian = read.at("dtype").get<std::string>().front() == '>';
     array.first_axis_fastest = read.value("order", "C") == "F";
-    if (const auto separator = read.value("dimension_separator", "."); separator == "/") array.separator = '/';
+    // Older programs wrote folders without saying so.
+    const bool has_folders = array.shape.size() > 1 && files.is_folder(file_in(folder, "0"));
+    array.separator = read.value("dimension_separator", has_folders ? "/" : ".") == "/" ? '/' : '.';
     if (read.contains("filters") && !read.at("filters").is_null() && !read.at("filters").empty())
-      fail_zarr(path, fmt::format("its chunks went through the filters {}; write them without",
-                                  read.at("filters").dump()));
+      fail_zarr(path, "its chunks went through filters; write them without");
     array.codec = codec_of(read.at("compressor"), path);
     array.fill = fill_of(read.at("fill_value"));
     check_lengths(array, path);

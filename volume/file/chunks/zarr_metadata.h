@@ -36,7 +36,6 @@ struct ZarrImage {
   std::string folder;  ///< of the array
   std::vector<ZarrAxis> axes;
   Vec3 spacing{1, 1, 1};
-  int levels = 1;
 };
 
 /// Whether a folder is an array or a group of Zarr, of any version.

@@ -38,6 +38,7 @@ namespace understudy::volume {
 namespace {
 
 constexpr std::uint64_t preamble_bytes = 128;
+constexpr int most_frames = 1 << 17;
 
 /// DCMTK says what went wrong on the standard error stream, too, where nobody asked for it.
 void prepare_dcmtk() {
@@ -100,14 +101,16 @@ Numbers numbers_of(DcmItem* item, const DcmTagKey& tag, std::size_t most) {
   OFString text;
   DcmElement* element = nullptr;
   // Of unknown types the text is that of bytes.
-  if (item == nullptr || item->findAndGetElement(tag, element).bad() || element->ident() == EVR_UN)
+  if (item == nullptr || item->findAndGetElement(tag, element).bad() || element->ident() == EVR_UN ||
+      element->getOFStringArray(text).bad())
     return found;
-  while (found.size() < most &&
-         item->findAndGetOFString(tag, text, static_cast<unsigned long>(found.size())).good()) {
+  for (const char* at = text.c_str(); *at != '\0' && found.size() < most;) {
     char* end = nullptr;
-    const double number = std::strtod(text.c_str(), &end);
-    if (end == text.c_str() || !std::isfinite(number)) break;
+    const double number = std::strtod(at, &end);
+    if (end == at || !std::isfinite(number)) break;
     found.push_back(number);
+    while (*end == ' ') ++end;
+    at = *end == '\\' ? end + 1 : end;
   }
   return found;
 }
@@ -168,6 +171,25 @@ std::optional<ScalarType> scalar_type(const PixelBits& bits) {
   }
 }
 
+/// What the Frame Increment Pointer says.
+enum class FrameOrder { by_place, by_time, unknown };
+
+FrameOrder frame_order(DcmItem& image) {
+  DcmElement* pointer = nullptr;
+  if (image.findAndGetElement(DCM_FrameIncrementPointer, pointer).bad() || pointer->getVM() == 0)
+    return FrameOrder::by_place;
+  FrameOrder order = FrameOrder::by_place;
+  for (unsigned long i = 0; i < pointer->getVM(); ++i) {
+    DcmTagKey by;
+    if (pointer->getTagVal(by, i).bad()) return FrameOrder::unknown;
+    if (by == DCM_SliceVector || by == DCM_GridFrameOffsetVector) continue;
+    const bool only_time = (by == DCM_FrameTime || by == DCM_FrameTimeVector) && pointer->getVM() == 1;
+    if (!only_time) return FrameOrder::unknown;
+    order = FrameOrder::by_time;
+  }
+  return order;
+}
+
 /// Why an image cannot be shown as scalars; empty where it can.
 std::string trouble_with(DcmItem& image) {
   const std::string meaning = text_of(image, DCM_PhotometricInterpretation);
@@ -179,6 +201,9 @@ std::string trouble_with(DcmItem& image) {
                        bits.stored, bits.allocated);
   if (image.tagExists(DCM_ModalityLUTSequence))
     return "its values are told by a table (Modality LUT), which is not read; convert it first (dcm2niix)";
+  if (integer_of(image, DCM_NumberOfFrames, 1) > 1 && frame_order(image) == FrameOrder::unknown)
+    return "its frames follow each other in an order that is not read (Frame Increment Pointer); convert it "
+           "first";
   OFString kind;
   if (image.findAndGetOFStringArray(DCM_ImageType, kind).good() && kind.find("MOSAIC") != OFString_npos)
     return "its slices lie beside each other in one image (MOSAIC); convert the series first (dcm2niix)";
@@ -219,7 +244,10 @@ std::optional<DicomPlane> plane_of(const Numbers& position, const Numbers& ways)
   const double size = length(normal);
   constexpr double shortest = 0.5;  // 1 for rows and columns at right angles
   if (!(size > shortest)) return std::nullopt;
-  return DicomPlane{{position[0], position[1], position[2]}, rows, columns, scale(normal, 1 / size)};
+  return DicomPlane{{position[0], position[1], position[2]},
+                    scale(rows, 1 / length(rows)),
+                    scale(columns, 1 / length(columns)),
+                    scale(normal, 1 / size)};
 }
 
 /// Frames that say nothing of their own lie along the normal of the first one, as radiotherapy tells by
@@ -268,15 +296,6 @@ std::vector<DicomFrame> frames_of(DcmItem& image, std::uint64_t file_bytes, cons
   return found;
 }
 
-/// Whether frames are said to follow each other in time.
-bool follow_in_time(DcmItem& image) {
-  DcmElement* pointer = nullptr;
-  DcmTagKey by;
-  if (image.findAndGetElement(DCM_FrameIncrementPointer, pointer).bad() || pointer->getTagVal(by).bad())
-    return false;
-  return by == DCM_FrameTime || by == DCM_FrameTimeVector;
-}
-
 std::array<double, 5> order_in_time(DcmItem& image) {
   const auto first = [&](const DcmTagKey& tag) {
     const Numbers number = numbers_of(&image, tag, 1);
@@ -312,7 +331,7 @@ DicomHeader header_of(DcmItem& image, std::uint64_t file_bytes, const std::strin
   header.trouble = trouble_with(image);
   if (!header.trouble.empty()) return header;
   header.order = order_in_time(image);
-  header.frames_are_times = follow_in_time(image);
+  header.frames_are_times = frame_order(image) == FrameOrder::by_time;
   header.size = {int(short_of(image, DCM_Columns, 0)), int(short_of(image, DCM_Rows, 0))};
   header.type = *scalar_type(bits_of(image));
   header.frames = frames_of(image, file_bytes, path);
@@ -358,15 +377,21 @@ std::optional<DicomHeader> dicom_header(const std::string& path, const ReadableF
   return with_dcmtk(path, [&]() -> std::optional<DicomHeader> {
     constexpr int deepest = 32;  // reports nest, images hardly
     if (!sequences_nest_within(*open_file(path, files), deepest))
-      fail_dicom(path,
-                 fmt::format("its sequences lie more than {} deep in each other; get the file again", deepest));
+      fail_dicom(path, fmt::format(
+                           "its header is damaged: elements of no type, or sequences more than {} deep in each "
+                           "other; get the file again",
+                           deepest));
     const OpenFile open(path, files);
     DcmMetaInfo meta;
     OFString syntax;
     // All of the file would have to be inflated before anything is known of it.
     if (meta.loadFile(open.name()).good() && meta.findAndGetOFString(DCM_TransferSyntaxUID, syntax).good() &&
-        trimmed(syntax.c_str()) == UID_DeflatedExplicitVRLittleEndianTransferSyntax)
-      fail_dicom(path, "it is deflated, which is not read; write it without (gdcmconv --raw)");
+        trimmed(syntax.c_str()) == UID_DeflatedExplicitVRLittleEndianTransferSyntax) {
+      DicomHeader header;
+      header.path = path;
+      header.trouble = "it is deflated, which is not read; write it without (gdcmconv --raw)";
+      return header;
+    }
     DcmFileFormat file;
     const OFCondition read = file.loadFileUntilTag(open.name(), EXS_Unknown, EGL_noChange, DCM_MaxReadLength,
                                                    ERM_autoDetect, DCM_PixelData);
@@ -384,7 +409,9 @@ class DicomFrames::Decoder {
  public:
   Decoder(const DicomHeader& header, const ReadableFiles& files) : header_(header), open_(header.path, files) {
     // Pixels stay in the file until they are asked for.
-    const OFCondition read = file_.loadFile(open_.name());
+    constexpr std::uint16_t group = 0x7fe0, behind_pixels = 0x0011;
+    const OFCondition read = file_.loadFileUntilTag(open_.name(), EXS_Unknown, EGL_noChange, DCM_MaxReadLength,
+                                                    ERM_autoDetect, DcmTagKey(group, behind_pixels));
     if (read.bad()) fail(read.text());
     bits_ = bits_of(*file_.getDataset());
     DcmElement* pixels = nullptr;

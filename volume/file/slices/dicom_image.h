@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One DICOM file: what its header says, and its pixels. Read by DCMTK: uncompressed, deflated, RLE, JPEG
+// One DICOM file: what its header says, and its pixels. Read by DCMTK: uncompressed, RLE, JPEG
 // (lossless, baseline, extended), JPEG-LS; and JPEG 2000 by OpenJPEG. dicom.nema.org/medical/dicom/current:
 // parts 3 (modules) and 5 (encodings).
 #pragma once

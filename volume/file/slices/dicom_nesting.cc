@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -54,6 +55,7 @@ struct Element {
   std::uint32_t length = 0;
   std::size_t header_bytes = 8;
   bool is_sequence = false;
+  bool is_unknown = false;  ///< of type UN, within which types are not told
 };
 
 std::uint32_t number(std::span<const std::uint8_t> bytes, bool big_endian) {
@@ -67,7 +69,8 @@ bool is_type(std::uint8_t a, std::uint8_t b) {
   return a >= 'A' && a <= 'Z' && b >= 'A' && b <= 'Z';
 }
 
-Element element_at(Window& window, std::uint64_t place, const Syntax& syntax) {
+/// None where the type is not one of DICOM's, whose lengths readers guess.
+std::optional<Element> element_at(Window& window, std::uint64_t place, const Syntax& syntax) {
   const std::array<std::uint8_t, 12> bytes = window.at(place);
   const auto part = [&](std::size_t first, std::size_t count) {
     return number(std::span(bytes).subspan(first, count), syntax.big_endian);
@@ -77,13 +80,18 @@ Element element_at(Window& window, std::uint64_t place, const Syntax& syntax) {
   found.length = part(4, 4);
   const bool is_delimiter = found.tag == item || found.tag == item_ends || found.tag == sequence_ends;
   if (is_delimiter) return found;
-  if (syntax.explicit_types && is_type(bytes[4], bytes[5])) {
+  if (syntax.explicit_types) {
     const std::string type{char(bytes[4]), char(bytes[5])};
-    constexpr std::string_view long_types = "OB OD OF OL OV OW SQ SV UC UN UR UT UV";
+    constexpr std::string_view long_types = "OB OD OF OL OV OW SQ SV UC UN UR UT UV",
+                               short_types = "AE AS AT CS DA DS DT FD FL IS LO LT PN SH SL SS ST TM UI UL US";
+    if (!is_type(bytes[4], bytes[5]) ||
+        (long_types.find(type) == std::string_view::npos && short_types.find(type) == std::string_view::npos))
+      return std::nullopt;
     const bool is_long = long_types.find(type) != std::string_view::npos;
     found.length = is_long ? part(8, 4) : part(6, 2);
     found.header_bytes = is_long ? 12 : 8;
     found.is_sequence = type == "SQ";
+    found.is_unknown = type == "UN";
   }
   // What it is may not be told; sequences begin with an item.
   if (found.length == undefined_length) found.is_sequence = true;
@@ -96,45 +104,62 @@ Element element_at(Window& window, std::uint64_t place, const Syntax& syntax) {
   return found;
 }
 
-/// That of the elements behind group 2, which says it.
-Syntax syntax_behind_meta_information(Window& window, std::uint64_t& place) {
-  Syntax syntax{.explicit_types = true, .big_endian = false};
+/// Of the elements behind group 2, which says it and is passed over.
+std::optional<Syntax> syntax_behind_meta_information(Window& window, std::uint64_t& place) {
+  constexpr std::uint32_t syntax_uid = 0x00020010, longest_uid = 64;
+  constexpr std::string_view deflated = "1.2.840.10008.1.2.1.99";
+  const Syntax meta{.explicit_types = true, .big_endian = false};
   std::string uid;
-  for (Element found = element_at(window, place, syntax);
-       found.tag >> 16 == 2 && found.length != undefined_length; found = element_at(window, place, syntax)) {
-    if (found.tag == 0x00020010)
-      for (std::uint32_t i = 0; i < std::min<std::uint32_t>(found.length, 64); ++i)
-        if (const std::uint8_t c = window.at(place + found.header_bytes + i)[0]; c != 0) uid += char(c);
-    place += found.header_bytes + found.length;
+  for (;;) {
+    const std::optional<Element> found = element_at(window, place, meta);
+    if (!found || found->tag >> 16 != 2) break;
+    if (found->is_sequence) return std::nullopt;  // there are none in it
+    if (found->tag == syntax_uid)
+      for (std::uint32_t i = 0; i < std::min(found->length, longest_uid); ++i)
+        if (const std::uint8_t c = window.at(place + found->header_bytes + i)[0]; c != 0 && c != ' ')
+          uid += char(c);
+    place += found->header_bytes + found->length;
   }
-  syntax.big_endian = uid == "1.2.840.10008.1.2.2";
-  const std::array<std::uint8_t, 12> first = window.at(place);
-  syntax.explicit_types = is_type(first[4], first[5]);
-  return syntax;
+  if (uid == deflated) place = no_end;  // nobody reads on
+  // Without meta information the first element tells.
+  const std::array<std::uint8_t, 12> first =
+      place == no_end ? std::array<std::uint8_t, 12>{} : window.at(place);
+  const bool looks_explicit = is_type(first[4], first[5]);
+  return Syntax{.explicit_types = uid.empty() ? looks_explicit : uid != "1.2.840.10008.1.2",
+                .big_endian = uid == "1.2.840.10008.1.2.2"};
 }
 
 }  // namespace
 
 bool sequences_nest_within(ByteSource& file, int most) {
+  constexpr int most_elements = 20'000'000;
   Window window(file);
   const std::array<std::uint8_t, 12> mark = window.at(mark_end - 4);
   std::uint64_t place =
       std::string_view(reinterpret_cast<const char*>(mark.data()), 4) == "DICM" ? mark_end : 0;
-  const Syntax syntax = syntax_behind_meta_information(window, place);
+  const std::optional<Syntax> syntax = syntax_behind_meta_information(window, place);
+  if (!syntax) return false;
   const std::uint64_t size = file.size().value_or(0);
-  std::vector<std::uint64_t> ends;  // of the sequences and items that are open
-  while (place < size) {
-    while (!ends.empty() && ends.back() <= place) ends.pop_back();
-    const Element found = element_at(window, place, syntax);
-    if (found.tag == pixel_data && ends.empty()) return true;
-    place += found.header_bytes;
-    if (found.tag == item_ends || found.tag == sequence_ends) {
-      if (!ends.empty()) ends.pop_back();
-    } else if (found.is_sequence || found.tag == item) {
-      ends.push_back(found.length == undefined_length ? no_end : place + found.length);
-      if (ends.size() > 2 * std::size_t(most)) return false;
+  struct Open {
+    std::uint64_t end;
+    Syntax syntax;
+  };
+  std::vector<Open> open;  // sequences and items
+  for (int i = 0; place < size; ++i) {
+    while (!open.empty() && open.back().end <= place) open.pop_back();
+    const Syntax here = open.empty() ? *syntax : open.back().syntax;
+    const std::optional<Element> found = element_at(window, place, here);
+    if (!found || i > most_elements) return false;
+    if (found->tag == pixel_data && open.empty()) return true;
+    place += found->header_bytes;
+    if (found->tag == item_ends || found->tag == sequence_ends) {
+      if (!open.empty()) open.pop_back();
+    } else if (found->is_sequence || found->tag == item) {
+      const Syntax within = found->is_unknown ? Syntax{} : here;
+      open.push_back({found->length == undefined_length ? no_end : place + found->length, within});
+      if (open.size() > 2 * std::size_t(most)) return false;
     } else {
-      place += found.length;
+      place += found->length;
     }
   }
   return true;

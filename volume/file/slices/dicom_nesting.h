@@ -6,8 +6,9 @@
 
 namespace understudy::volume {
 
-/// Whether no sequence before the pixels lies in more than `most` others. DCMTK 3.6.7 calls itself for each of
-/// them, until its stack ends. Throws FileError where the file cannot be read.
+/// Whether all that comes before the pixels is made of DICOM's elements, and no sequence lies in more than
+/// `most` others. DCMTK 3.6.7 calls itself for each of them, until its stack ends. Throws FileError where the
+/// file cannot be read.
 bool sequences_nest_within(ByteSource& file, int most);
 
 }  // namespace understudy::volume

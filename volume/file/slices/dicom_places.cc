@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -20,7 +21,8 @@ namespace {
 constexpr double least_cosine = 0.9999;
 // Of the usual distance: what scanners round, and what a missing slice is far beyond.
 constexpr double most_uneven = 0.1;
-// Of a pixel: slices that lie closer are at one place, and rows that are shifted by less lie behind each other.
+// Of a pixel: slices that lie closer, and closer than `rounded`, are at one place; rows that are shifted by
+// less lie behind each other.
 constexpr double same_place = 0.1;
 constexpr double most_shifted = 0.5;
 // In mm: positions are written with two digits behind the point at least.
@@ -107,7 +109,10 @@ void check_beside(const std::vector<DicomPlace>& places, double most) {
 }
 
 void check_counts(const std::vector<DicomPlace>& places) {
-  const std::size_t steps = places.front().images.size();
+  std::map<std::size_t, std::size_t> places_of_count;
+  for (const DicomPlace& place : places) ++places_of_count[place.images.size()];
+  const std::size_t steps =
+      std::ranges::max_element(places_of_count, {}, [](const auto& entry) { return entry.second; })->first;
   for (const DicomPlace& place : places) {
     const DicomHeader& file = *place.images.front().file;
     if (place.images.size() != steps)

@@ -129,8 +129,11 @@ std::unique_ptr<VolumeFile> open_dicom_series(const std::string& folder, std::sp
   for (const DicomPlace& place : places) images.push_back(place.images[std::size_t(time_step)]);
   const DicomHeader& first = *images.front().file;
   const DicomFrame& meaning = images.front().header();
-  const bool alike = std::ranges::all_of(images, [&](const DicomImage& image) {
-    return image.header().slope == meaning.slope && image.header().intercept == meaning.intercept;
+  // All steps mean their values alike, or none is taken for what it stores.
+  const bool alike = std::ranges::all_of(places, [&](const DicomPlace& place) {
+    return std::ranges::all_of(place.images, [&](const DicomImage& image) {
+      return image.header().slope == meaning.slope && image.header().intercept == meaning.intercept;
+    });
   });
   description.type = alike ? first.type : ScalarType::f32;
   if (alike) {

@@ -48,49 +48,45 @@ bool is_regular(DIR* folder, const dirent& entry) {
   return ::fstatat(::dirfd(folder), entry.d_name, &about, 0) == 0 && S_ISREG(about.st_mode);
 }
 
-/// Whether two names are those of neighbouring slices: one run of digits counts on, and all else is the same.
-bool follows(const std::string& before, const std::string& name) {
-  std::size_t i = 0, k = 0;
-  int counted = 0;
+/// By how much the one run of digits counts on in which two names differ; 0 where they differ otherwise.
+long long counted_on(const std::string& before, const std::string& name) {
   const auto is_decimal = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t i = 0, k = 0;
+  long long step = 0;
   while (i < before.size() && k < name.size()) {
     if (!is_decimal(before[i]) || !is_decimal(name[k])) {
-      if (before[i++] != name[k++]) return false;
+      if (before[i++] != name[k++]) return 0;
       continue;
     }
     const std::size_t i_end = std::min(before.size(), before.find_first_not_of("0123456789", i));
     const std::size_t k_end = std::min(name.size(), name.find_first_not_of("0123456789", k));
+    const std::string a = before.substr(i, i_end - i), b = name.substr(k, k_end - k);
     constexpr std::size_t most_digits = 18;
-    if (i_end - i > most_digits || k_end - k > most_digits) return false;
-    const long long a = std::stoll(before.substr(i, i_end - i)), b = std::stoll(name.substr(k, k_end - k));
-    if (b != a && b != a + 1) return false;
-    counted += b == a + 1 ? 1 : 0;
+    if (a != b) {
+      if (step != 0 || std::max(a.size(), b.size()) > most_digits) return 0;
+      step = std::stoll(b) - std::stoll(a);
+    }
     i = i_end;
     k = k_end;
   }
-  return i >= before.size() && k >= name.size() && counted == 1;
+  return i >= before.size() && k >= name.size() ? step : 0;
 }
 
 void check_that_they_follow(const std::vector<std::string>& files) {
+  long long first_step = 0;
   for (std::size_t i = 1; i < files.size(); ++i) {
     const std::string before = std::filesystem::path(files[i - 1]).filename();
-    const std::string name = std::filesystem::path(files[i]).filename();
-    if (!follows(before, name))
-      fail_folder(files[i], fmt::format("does not follow {}: names of slices count on by one, and are the same "
-                                        "otherwise; put those of one volume into a folder of their own",
-                                        before));
+    const long long step = counted_on(before, std::filesystem::path(files[i]).filename());
+    if (i == 1) first_step = step;
+    if (step <= 0 || step != first_step)
+      fail_folder(files[i],
+                  fmt::format("does not follow {}: one number in the names of slices counts on, by {} here, "
+                              "and all else is the same; put those of one volume into a folder of their own",
+                              before, std::max(1LL, first_step)));
   }
 }
 
 }  // namespace
-
-bool is_folder(const std::string& path, const ReadableFiles& readable) {
-  try {
-    return open_folder(path, readable) != nullptr;
-  } catch (const FileError&) {
-    return false;  // whoever reads it says why
-  }
-}
 
 std::vector<std::string> files_in_folder(const std::string& folder, const ReadableFiles& readable) {
   const OpenFolder open = open_folder(folder, readable);

@@ -11,15 +11,12 @@
 
 namespace understudy::volume {
 
-/// Whether `path` is a folder that may be read.
-bool is_folder(const std::string& path, const ReadableFiles& readable = {});
-
-/// The paths of the regular files in it, hidden ones aside, in the order of the numbers in their names
+/// The paths of the regular files in a folder, hidden ones aside, in the order of the numbers in their names
 /// (slice_9 before slice_10). Throws FileError.
 std::vector<std::string> files_in_folder(const std::string& folder, const ReadableFiles& readable = {});
 
-/// The volume that a folder holds: a DICOM series, or TIFF files with one slice each, whose names count on by
-/// one. What is neither is passed over. Throws FileError, also where there are both, or several series.
+/// The volume that a folder holds: a DICOM series, or TIFF files with one slice each, in whose names one number
+/// counts on. What is neither is passed over. Throws FileError, also where there are both, or several series.
 std::unique_ptr<VolumeFile> open_slice_folder(const std::string& folder, int time_step,
                                               const ReadableFiles& readable = {});
 

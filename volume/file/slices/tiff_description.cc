@@ -69,6 +69,7 @@ TiffDescription from_imagej(const std::string& text, const std::string& path) {
 /// The attributes of the first element "Pixels", and of those that say which page holds which plane of it.
 struct OmePixels {
   bool there = false;
+  bool ended = false;  ///< what follows is of other images
   bool out_of_memory = false;
   Fields fields;
   std::vector<Fields> pages;
@@ -86,12 +87,16 @@ OmePixels pixels_of(const std::string& text, const std::string& path) {
     try {  // no exception may pass through expat
       Fields* to = nullptr;
       if (element == "Pixels" && !pixels->there) to = &pixels->fields;
-      if (element == "TiffData" && pixels->there) to = &pixels->pages.emplace_back();
+      if (element == "TiffData" && pixels->there && !pixels->ended) to = &pixels->pages.emplace_back();
       pixels->there = pixels->there || element == "Pixels";
       for (; to != nullptr && *words != nullptr; words += 2) (*to)[words[0]] = words[1];
     } catch (const std::bad_alloc&) {
       pixels->out_of_memory = true;
     }
+  });
+  XML_SetEndElementHandler(parser.get(), [](void* user, const char* name) {
+    const std::string_view whole(name);
+    if (whole.substr(whole.rfind(':') + 1) == "Pixels") static_cast<OmePixels*>(user)->ended = true;
   });
   if (XML_Parse(parser.get(), text.data(), int(text.size()), XML_TRUE) == XML_STATUS_ERROR && !found.there)
     fail_tiff(path, fmt::format("its OME description is damaged: {}; get the file again",

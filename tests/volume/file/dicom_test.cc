@@ -416,7 +416,6 @@ TEST(DicomSeries, DeepSequencesAreRefused) {
                   little(0xFFFE, 2) + little(0xE000, 2) + little(0xFFFFFFFF, 4);
     }
     file.more.clear();
-    // Before the pixels, and behind them, where nobody looks.
     file.more[{8, 0x1140}] = nested;
     EXPECT_THAT(trouble_with(folder.write("a.dcm", dicom_bytes(file))),
                 HasSubstr("sequences more than 32 deep"));

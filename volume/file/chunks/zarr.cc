@@ -147,7 +147,7 @@ class ZarrVolume : public VolumeFile {
     description().type == ScalarType::u64 ? put(std::uint64_t{}) : put(std::int64_t{});
   }
 
-  /// 0 for values that an integer type does not have.
+  /// 0 for values that an integer type does not have, and for those beyond 9.2e18.
   template <typename Scalar>
   static Scalar as(double value) {
     if constexpr (std::is_floating_point_v<Scalar>) return Scalar(value);

@@ -16,6 +16,11 @@ takes less than half a second.
 Rows of the viewer `viewer` are those of ./run viewers, whose script is asked with the name that stands in place of the
 data; of these the last image alone is compared.
 
+With --simultaneous the two runs of a round share one processor, and frames are timed by what each process has had of it:
+whatever slows the machine for a second slows both. This is for machines with neighbours, on which times of two runs in a row
+scatter by more than the ratio is asked to tell. Viewers whose script is not Python, or whose nodes are processes of their
+own, cannot be timed that way.
+
 With --watch each row runs once under Understudy, with the speed guard off, and once bare: the table says how many images
 were compared and lost, and what recognition and sentinels took of a bare frame, on average over all frames but the
 first; and how long Understudy waited for what the viewer itself had drawn before, as the viewer would have done.
@@ -38,6 +43,7 @@ import shutil
 import statistics
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy
@@ -45,6 +51,8 @@ import numpy
 from viewers import ROOT, UNDERSTUDY, missing, run_group, say, viewer_script
 
 OUT = ROOT / "out" / "modes"
+# In it Python's clock is that of the process.
+PROCESSOR_TIME = Path(__file__).resolve().parent / "processor_time"
 TILE = 16
 # The bounds of docs/verification.md, in 1/255: on a tile's average, and on what an eighth of its pixels reach.
 MAX_EXCESS, MAX_COMMON = 3.0, 8.0
@@ -146,13 +154,15 @@ def worst_tile(a, b):
 class Run:
     """One row, one way, once."""
 
-    def __init__(self, row, way, frames, seconds, options=""):
+    def __init__(self, row, way, frames, seconds, options="", own_clock=False):
         stem = re.sub(r"[^A-Za-z0-9.-]+", "_", ".".join([*row, way]))
         image, report, log = OUT / f"{stem}.png", OUT / f"{stem}.json", OUT / f"{stem}.log"
         self.images = [OUT / f"{stem}.a.png", OUT / f"{stem}.b.png", image]
         for old in (*self.images, report):
             old.unlink(missing_ok=True)
         environment = dict(os.environ, WITH="" if way == "bare" else f"{UNDERSTUDY} run {options} --report {report} --")
+        if own_clock:
+            environment["PYTHONPATH"] = os.pathsep.join([str(PROCESSOR_TIME), *filter(None, [os.environ.get("PYTHONPATH")])])
         status = run_group(command_of(row, image, frames), environment, log, seconds)
         words = log.read_text(encoding="utf-8", errors="replace")
         self.report = json.loads(report.read_text(encoding="utf-8")) if report.exists() else None
@@ -186,8 +196,11 @@ def interval(ratios):
 
 
 def pair_of(row, number, frames, arguments):
-    """Bare and substituted runs, one after the other; which of them comes first changes from round to round."""
+    """Bare and substituted runs, one after the other, which of them first changes from round to round; or at the same time."""
     ways = ("bare", "substituted")
+    if arguments.simultaneous:
+        with ThreadPoolExecutor() as pool:
+            return dict(zip(ways, pool.map(lambda way: Run(row, way, frames, arguments.seconds, own_clock=True), ways)))
     return {way: Run(row, way, frames, arguments.seconds) for way in (ways if number % 2 == 0 else reversed(ways))}
 
 
@@ -312,6 +325,8 @@ def main():
     parser.add_argument("names", nargs="*", metavar="NAME", help="rows whose VIEWER:DATA:MODES contains this; without a name all")
     parser.add_argument("--rounds", type=int, default=5, help="how often bare and substituted runs follow each other (5)")
     parser.add_argument("--frames", type=int, default=12, help="frames that a viewer shows (12)")
+    parser.add_argument("--simultaneous", action="store_true",
+                        help="both runs of a round at once on one processor, timed by what each has had of it")
     parser.add_argument("--watch", action="store_true", help="one long run of each row, without the speed guard")
     parser.add_argument("--seconds", type=int, default=120, help="after these one run of a viewer is given up (120)")
     arguments = parser.parse_args()
@@ -322,6 +337,8 @@ def main():
         sys.exit("modes: no row has such a name; tests/clients/modes.py lists them")
     shutil.rmtree(OUT, ignore_errors=True)
     OUT.mkdir(parents=True)
+    if arguments.simultaneous:
+        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     rows = []
     table = watched_markdown if arguments.watch else markdown
     for row in wanted:

@@ -25,7 +25,7 @@ std::uint64_t peak_resident_bytes() {
 
 void Loads::begin(VolumeKey key, const LoadRequest& request) {
   forget(key);
-  std::unique_ptr<volume::VolumeFile> file = volume::open_volume(request.file, request.hints, files_);
+  std::unique_ptr<volume::VolumeFile> file = volume::open_volume(request.file, request.hints, files_, headers_);
   const volume::TexelMapping mapping = volume::mapping_of(file->description(), request.texels);
   const volume::VolumeDescription& wanted = request.volume;
   if (file->description().size != wanted.size || mapping.type != wanted.type ||

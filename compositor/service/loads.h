@@ -12,6 +12,7 @@
 #include "compositor/service/loading_service.h"
 #include "compositor/service/rank_renderer.h"
 #include "volume/file/readable_files.h"
+#include "volume/file/slices/dicom_headers.h"
 #include "volume/file/texel_stream.h"
 #include "volume/frame_counts.h"
 
@@ -51,6 +52,7 @@ class Loads {
   RankRenderer& renderer_;
   int rank_;
   volume::ReadableFiles files_;
+  volume::DicomHeaders headers_;  ///< of the folder that was read last
   std::map<VolumeKey, Load> loads_;
 };
 

@@ -15,9 +15,16 @@
 
 namespace understudy::volume {
 
+class DicomHeaders;
+
 /// Reads no more than the header, from `files` alone: also a second file that the first one names. Throws
 /// FileError.
 std::unique_ptr<VolumeFile> open_volume(const std::string& name, const FileHints& hints = {},
                                         const ReadableFiles& files = {});
+
+/// The same for one who opens several time steps: a folder of thousands of DICOM files is parsed for the first
+/// of them, and `headers` knows it then.
+std::unique_ptr<VolumeFile> open_volume(const std::string& name, const FileHints& hints,
+                                        const ReadableFiles& files, DicomHeaders& headers);
 
 }  // namespace understudy::volume

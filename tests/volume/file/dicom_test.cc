@@ -3,11 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 
 #include "tests/volume/file/dicom_files.h"
 #include "volume/file/file_error.h"
 #include "volume/file/readable_files.h"
+#include "volume/file/slices/dicom_headers.h"
+#include "volume/file/slices/slice_folder.h"
 #include "volume/opening/open_volume.h"
 
 namespace understudy::volume::testing {
@@ -498,6 +501,34 @@ TEST(DicomSeries, JpegImagesOfAnotherSizeOrDepthAreRefused) {
   }
   recompress(folder.file("plain"), alone.file("a.dcm"), "--deflated");
   EXPECT_THAT(trouble_with(alone.file("a.dcm")), HasSubstr("it is deflated, which is not read"));
+}
+
+TEST(DicomHeaders, FilesAreParsedAgainWhereTheyChanged) {
+  const TemporaryFolder folder;
+  const Bytes scalars = random_scalars(series_size, ScalarType::i16, 6);
+  write_series(folder, scalars, ScalarType::i16);
+  std::vector<std::string> files = files_in_folder(folder.file(""));
+  DicomHeaders known;
+  const auto first = known.of(files, {});
+  ASSERT_EQ(first.size(), std::size_t(series_size[2]));
+  EXPECT_EQ(known.of(files, {}), first);
+  DicomFile other = slice_file(scalars, 2);
+  other.slope = 3;
+  const std::string name = std::filesystem::path(files[2]).filename();
+  folder.write(name, dicom_bytes(other));
+  std::filesystem::last_write_time(files[2],
+                                   std::filesystem::last_write_time(files[1]) + std::chrono::seconds(1));
+  const auto second = known.of(files, {});
+  ASSERT_EQ(second.size(), first.size());
+  EXPECT_EQ(second[2]->frames.front().slope, 3);
+  for (const std::size_t same : {0, 1, 3}) EXPECT_EQ(second[same], first[same]);
+  // What is not asked for is forgotten.
+  known.of(std::span(files).first(1), {});
+  const auto third = known.of(files, {});
+  EXPECT_EQ(third[0], first[0]);
+  EXPECT_NE(third[1], first[1]);
+  std::filesystem::remove(files[1]);
+  EXPECT_THROW(known.of(files, {}), FileError);
 }
 
 TEST(DicomSeries, FoldersAreReadOnlyWhereClientsMay) {

@@ -25,12 +25,9 @@ namespace {
 using Series = std::map<std::string, DicomFiles>;
 
 /// By Series Instance UID.
-Series series_in(std::span<const std::string> files, const ReadableFiles& readable) {
+Series series_in(const DicomFiles& files) {
   Series found;
-  for (const std::string& file : files) {
-    if (std::optional<DicomHeader> header = dicom_header(file, readable))
-      found[header->series].push_back(std::make_shared<const DicomHeader>(std::move(*header)));
-  }
+  for (const auto& header : files) found[header->series].push_back(header);
   return found;
 }
 
@@ -118,8 +115,9 @@ class DicomSlices : public SliceImages {
 
 std::unique_ptr<VolumeFile> open_dicom_series(const std::string& folder, std::span<const std::string> files,
                                               const std::string& chosen, int time_step,
-                                              const ReadableFiles& readable) {
-  const std::vector<DicomPlace> places = places_of(chosen_series(folder, series_in(files, readable), chosen));
+                                              const ReadableFiles& readable, DicomHeaders& headers) {
+  const std::vector<DicomPlace> places =
+      places_of(chosen_series(folder, series_in(headers.of(files, readable)), chosen));
   const std::string& path = chosen.empty() ? folder : chosen;
   FileDescription description;
   description.time_steps = checked_time_steps(std::int64_t(places.front().images.size()), path);

@@ -103,7 +103,7 @@ std::vector<std::string> files_in_folder(const std::string& folder, const Readab
 }
 
 std::unique_ptr<VolumeFile> open_slice_folder(const std::string& folder, int time_step,
-                                              const ReadableFiles& readable) {
+                                              const ReadableFiles& readable, DicomHeaders& headers) {
   std::vector<std::string> dicom, tiff;
   for (const std::string& file : files_in_folder(folder, readable)) {
     if (is_dicom(file, readable))
@@ -123,17 +123,17 @@ std::unique_ptr<VolumeFile> open_slice_folder(const std::string& folder, int tim
         folder,
         "is a folder without slices in DICOM or TIFF files; name the volume file in it, or the folder in "
         "it that holds slices");
-  return open_dicom_series(folder, dicom, "", time_step, readable);
+  return open_dicom_series(folder, dicom, "", time_step, readable, headers);
 }
 
 std::unique_ptr<VolumeFile> open_series_of_file(const std::string& file, int time_step,
-                                                const ReadableFiles& readable) {
+                                                const ReadableFiles& readable, DicomHeaders& headers) {
   const std::filesystem::path parent = std::filesystem::path(file).parent_path();
   const std::string folder = parent.empty() ? "." : parent.string();
   std::vector<std::string> dicom;
   for (const std::string& beside : files_in_folder(folder, readable))
     if (is_dicom(beside, readable)) dicom.push_back(beside);
-  return open_dicom_series(folder, dicom, file, time_step, readable);
+  return open_dicom_series(folder, dicom, file, time_step, readable, headers);
 }
 
 }  // namespace understudy::volume

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "volume/file/chunks/zarr.h"
-#include "volume/file/chunks/zarr_metadata.h"
+#include "volume/file/chunks/zarr_image.h"
 #include "volume/file/file_error.h"
 #include "volume/file/hierarchical_volume.h"
 #include "volume/file/meta_image.h"

@@ -7,6 +7,7 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <boost/crc.hpp>
 #include <limits>
 #include <stdexcept>
 
@@ -70,6 +71,19 @@ void decode_chunk(ChunkCodec codec, std::span<const std::byte> packed, std::span
     case ChunkCodec::lz4:
       return decode_lz4(packed, chunk);
   }
+}
+
+std::span<const std::byte> without_checksum(std::span<const std::byte> bytes) {
+  using Crc32c = boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, true>;
+  constexpr std::size_t checksum_bytes = 4;
+  if (bytes.size() < checksum_bytes) fail_chunk();
+  const std::span<const std::byte> checked = bytes.first(bytes.size() - checksum_bytes);
+  Crc32c checksum;
+  checksum.process_bytes(checked.data(), checked.size());
+  std::uint32_t told = 0;
+  for (std::size_t i = 0; i < checksum_bytes; ++i) told |= std::uint32_t(bytes[checked.size() + i]) << (8 * i);
+  if (checksum.checksum() != told) throw std::runtime_error("its checksum is that of other bytes");
+  return checked;
 }
 
 }  // namespace understudy::volume

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Chunks as programs that write Zarr leave them.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+
+#include "tests/volume/file/volume_files.h"
+#include "volume/file/chunks/chunk_codec.h"
+
+namespace understudy::volume::testing {
+
+inline constexpr std::array<int, 3> array_size{37, 21, 11}, chunk_size{16, 8, 4};
+
+struct ZarrChoice {
+  ScalarType type = ScalarType::u16;
+  ChunkCodec codec = ChunkCodec::none;
+  bool big_endian = false;
+  bool first_axis_fastest = false;
+  char separator = '.';
+};
+
+Bytes packed(const Bytes& chunk, ChunkCodec codec, std::size_t scalar);
+
+void write_text(const std::filesystem::path& path, const std::string& text);
+void write_bytes(const std::filesystem::path& path, const Bytes& bytes);
+
+/// The chunk's scalars, those outside of the array 0, in the order that was chosen.
+Bytes chunk_of(const Bytes& scalars, const std::array<int, 3>& low, const ZarrChoice& choice);
+
+}  // namespace understudy::volume::testing

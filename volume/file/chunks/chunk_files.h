@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// The chunks of an array, each in a file of its own or several in a shard.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "volume/file/byte_source.h"
+#include "volume/file/chunks/zarr_array.h"
+#include "volume/file/readable_files.h"
+
+namespace understudy::volume {
+
+class ChunkFiles {
+ public:
+  /// `folder` is that of the array.
+  ChunkFiles(std::string folder, ZarrArray array, ReadableFiles files);
+
+  const ZarrArray& array() const { return array_; }
+  const std::string& folder() const { return folder_; }
+
+  /// The scalars of a chunk, in the order that array().encoding has and as this processor has them in memory.
+  /// `chunk` counts along each axis of the array. Throws FileError.
+  std::vector<std::byte> scalars_of(std::span<const std::int64_t> chunk);
+
+  /// Of one chunk, in bytes.
+  std::size_t decoded_bytes() const { return decoded_bytes_; }
+  /// What is in use at most while a chunk is read, in bytes, beyond the chunk itself.
+  std::size_t memory_to_read() const;
+  std::uint64_t bytes_read() const { return bytes_read_; }
+
+ private:
+  struct Place {
+    std::uint64_t offset = 0, bytes = 0;  ///< in the file
+  };
+  /// Where the chunks of a shard are, and nothing for those that are not there.
+  using ShardIndex = std::vector<std::optional<Place>>;
+
+  std::string path_of(std::span<const std::int64_t> file) const;
+  /// Nothing where the chunk is not there.
+  std::optional<std::vector<std::byte>> packed(std::span<const std::int64_t> chunk);
+  std::optional<std::vector<std::byte>> packed_in_shard(std::span<const std::int64_t> chunk);
+  const ShardIndex& index_of(const std::vector<std::int64_t>& shard, ByteSource& file);
+  ShardIndex read_index(ByteSource& file);
+  std::vector<std::byte> read_bytes(ByteSource& file, Place place);
+  std::size_t chunks_in_shard() const;
+
+  std::string folder_;
+  ZarrArray array_;
+  ReadableFiles files_;
+  std::size_t decoded_bytes_ = 0;
+  std::map<std::vector<std::int64_t>, ShardIndex> indices_;
+  std::uint64_t bytes_read_ = 0;
+};
+
+}  // namespace understudy::volume

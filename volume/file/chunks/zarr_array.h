@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the metadata of a Zarr array says, of version 2 or 3: zarr-specs.readthedocs.io.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "volume/file/chunks/chunk_codec.h"
+#include "volume/file/readable_files.h"
+#include "volume/file/scalar_type.h"
+
+namespace understudy::volume {
+
+/// How the scalars of a chunk become bytes.
+struct ChunkEncoding {
+  std::vector<std::size_t> order;  ///< the array's axes as they lie in a chunk, the slowest first
+  bool big_endian = false;
+  ChunkCodec codec = ChunkCodec::none;
+  bool checksum = false;  ///< CRC-32C in the last four bytes
+};
+
+/// The name of a chunk's file: `prefix`, and the chunk's numbers with `separator` before each but the first.
+struct ChunkNames {
+  std::string prefix;
+  char separator = '.';
+};
+
+/// Several chunks in one file, with an index of where each is.
+struct Shards {
+  std::vector<std::int64_t> chunks;  ///< how many along each axis
+  bool index_in_front = false;
+  bool index_big_endian = false;
+  bool index_checksum = true;
+};
+
+/// An array of scalars with some axes, the slowest first as the format lists them.
+struct ZarrArray {
+  std::vector<std::int64_t> shape;
+  std::vector<std::int64_t> chunks;  ///< length of a chunk along each axis
+  ScalarType type = ScalarType::u8;
+  ChunkEncoding encoding;
+  ChunkNames names;
+  std::optional<Shards> shards;
+  std::vector<std::byte> fill;  ///< the scalar of which chunks consist that are not there, as in memory
+};
+
+constexpr std::size_t most_zarr_axes = 5;
+
+/// Throws FileError.
+ZarrArray zarr_array(const std::string& folder, const ReadableFiles& files);
+
+}  // namespace understudy::volume

@@ -31,8 +31,10 @@ class Folder {
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
 
+  /// `name` may lie in a folder of its own.
   std::string write(const std::string& name, std::span<const std::uint8_t> bytes) const {
-    const std::string path = path_ + "/" + name;
+    const std::filesystem::path path = std::filesystem::path(path_) / name;
+    std::filesystem::create_directories(path.parent_path());
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
     return path;
@@ -44,8 +46,9 @@ class Folder {
   ReadableFiles readable_;
 };
 
-/// The names are what most formats are known by. The .img of a .hdr is the same bytes.
-constexpr std::array<const char*, 11> names = {"a.nrrd",
+/// The names are what most formats are known by. The .img of a .hdr is the same bytes; files beside one of
+/// DICOM may belong to its series, so that it lies in a folder of its own.
+constexpr std::array<const char*, 13> names = {"a.nrrd",
                                                "a.nhdr",
                                                "a.nii",
                                                "a.nii.gz",
@@ -55,7 +58,36 @@ constexpr std::array<const char*, 11> names = {"a.nrrd",
                                                "a_3x4x5_int16be.raw",
                                                "a_3x4x5_f32.raw.gz",
                                                "a.uvol",
-                                               "a.mha"};
+                                               "a.mha",
+                                               "dicom/a.dcm",
+                                               "a.tif"};
+
+/// A volume that is a folder: its metadata, and one chunk.
+struct ChunkedNames {
+  const char* folder;
+  const char* metadata;
+  const char* chunk;
+};
+constexpr std::array<ChunkedNames, 2> chunked = {
+    {{"zarr_2", ".zarray", "0.0.0"}, {"zarr_3", "zarr.json", "c/0/0/0"}}};
+
+/// Bytes up to the first that is 0 are metadata, those behind it a chunk.
+std::string write_chunked(const Folder& folder, const ChunkedNames& files,
+                          std::span<const std::uint8_t> bytes) {
+  const auto end = std::ranges::find(bytes, std::uint8_t{0});
+  const std::size_t before = std::size_t(end - bytes.begin());
+  const std::string path = files.folder;
+  folder.write(path + "/" + files.chunk, bytes.subspan(std::min(bytes.size(), before + 1)));
+  const std::filesystem::path metadata = folder.write(path + "/" + files.metadata, bytes.first(before));
+  return metadata.parent_path();
+}
+
+std::string write_volume(const Folder& folder, std::size_t kind, std::span<const std::uint8_t> bytes) {
+  if (kind >= names.size()) return write_chunked(folder, chunked[kind - names.size()], bytes);
+  const std::string name = names[kind];
+  if (name == "a.hdr") folder.write("a.img", bytes);
+  return folder.write(name, bytes);
+}
 
 void read(const std::string& path, const ReadableFiles& files, bool at_end) {
   std::unique_ptr<VolumeFile> file = open_volume(path, {}, files);
@@ -86,9 +118,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const Folder folder;
   if (size == 0) return 0;
   const std::span bytes = std::span(data, size).subspan(1);
-  const std::string name = names[data[0] / 2 % names.size()];
-  const std::string path = folder.write(name, bytes);
-  if (name == "a.hdr") folder.write("a.img", bytes);
+  const std::string path = write_volume(folder, data[0] / 2 % (names.size() + chunked.size()), bytes);
   try {
     read(path, folder.readable(), data[0] % 2 == 1);
   } catch (const FileError&) {

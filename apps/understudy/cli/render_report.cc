@@ -122,6 +122,7 @@ void write_render_report(const std::string& path, const RenderFigures& figures) 
   Json report;
   report["volume"] = {{"file", figures.file},
                       {"time_step", figures.time_step},
+                      {"channel", figures.channel ? Json(*figures.channel) : Json()},
                       {"size", figures.description.size},
                       {"spacing", figures.description.spacing},
                       {"level_of_detail", level_json(figures.description)},

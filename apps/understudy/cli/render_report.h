@@ -25,6 +25,7 @@ struct BoundFigures {
 struct RenderFigures {
   std::string file;
   int time_step = 0;
+  std::optional<int> channel;  ///< none: the volume has one
   volume::FileDescription description;
   volume::TexelMapping mapping;
   int width = 0;

@@ -90,6 +90,7 @@ void Loads::complete(VolumeKey key) {
 
 void Loads::forget_client(std::uint64_t client) {
   std::erase_if(loads_, [&](const auto& entry) { return entry.first.client == client; });
+  if (loads_.empty()) headers_ = {};
 }
 
 }  // namespace understudy::compositor

@@ -52,7 +52,7 @@ class Loads {
   RankRenderer& renderer_;
   int rank_;
   volume::ReadableFiles files_;
-  volume::DicomHeaders headers_;  ///< of the folder that was read last
+  volume::DicomHeaders headers_;  ///< of the folder that was read last, while there are volumes
   std::map<VolumeKey, Load> loads_;
 };
 

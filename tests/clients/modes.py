@@ -16,8 +16,8 @@ takes less than half a second.
 Rows of the viewer `viewer` are those of ./run viewers, whose script is asked with the name that stands in place of the
 data; of these the last image alone is compared.
 
-With --simultaneous the two runs of a round share one processor, and frames are timed by what each process has had of it:
-whatever slows the machine for a second slows both. This is for machines with neighbours, on which times of two runs in a row
+With --simultaneous the two runs of a round share one processor, and "ms bare" is what frames had of it: whatever slows the
+machine for a second slows both. This is for machines with neighbours, on which times of two runs in a row
 scatter by more than the ratio is asked to tell. Viewers whose script is not Python, or whose nodes are processes of their
 own, cannot be timed that way.
 
@@ -246,6 +246,7 @@ def row_of(row, arguments):
     last = pair["substituted"]
     ratio, low, high = interval(ratios)
     return {"row": row, "ratio": ratio, "low": low, "high": high, "rounds": len(ratios), "tiles": tiles,
+            "simultaneous": arguments.simultaneous,
             "bare_ms": statistics.median(bare_ms) if bare_ms else None,
             "substituted": last.draws("substituted"), "left": last.draws("left"), "reason": last.reason()}
 
@@ -303,7 +304,7 @@ def markdown(rows):
             lines.append(f"| {name} | – | – | – | – | {row['trouble']} |")
             continue
         tiles = ", ".join("–" if tile is None else f"{tile:.2g}" for tile in row["tiles"])
-        bare = f"{row['bare_ms']:.1f}" if row["bare_ms"] else "–"
+        bare = f"{row['bare_ms']:.1f}{' of a processor' if row['simultaneous'] else ''}" if row["bare_ms"] else "–"
         lines.append(f"| {name} | {row['substituted']}, {row['left']} | {bare} | {ratio_cell(row)} | {tiles} | {row['reason'] or '–'} |")
     return "\n".join(lines) + "\n"
 
@@ -325,9 +326,10 @@ def main():
     parser.add_argument("names", nargs="*", metavar="NAME", help="rows whose VIEWER:DATA:MODES contains this; without a name all")
     parser.add_argument("--rounds", type=int, default=5, help="how often bare and substituted runs follow each other (5)")
     parser.add_argument("--frames", type=int, default=12, help="frames that a viewer shows (12)")
-    parser.add_argument("--simultaneous", action="store_true",
-                        help="both runs of a round at once on one processor, timed by what each has had of it")
-    parser.add_argument("--watch", action="store_true", help="one long run of each row, without the speed guard")
+    way = parser.add_mutually_exclusive_group()
+    way.add_argument("--simultaneous", action="store_true",
+                     help="both runs of a round at once on one processor, timed by what each has had of it")
+    way.add_argument("--watch", action="store_true", help="one long run of each row, without the speed guard")
     parser.add_argument("--seconds", type=int, default=120, help="after these one run of a viewer is given up (120)")
     arguments = parser.parse_args()
     if not UNDERSTUDY.exists():

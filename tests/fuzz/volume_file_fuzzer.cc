@@ -39,6 +39,7 @@ class Folder {
         .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
     return path;
   }
+  const std::string& path() const { return path_; }
   const ReadableFiles& readable() const { return readable_; }
 
  private:
@@ -62,24 +63,27 @@ constexpr std::array<const char*, 13> names = {"a.nrrd",
                                                "dicom/a.dcm",
                                                "a.tif"};
 
-/// A volume that is a folder: its metadata, and one chunk.
+/// A volume that is a folder: its first file, and what else is in it.
 struct ChunkedNames {
   const char* folder;
-  const char* metadata;
-  const char* chunk;
+  std::vector<const char*> files;
 };
-constexpr std::array<ChunkedNames, 2> chunked = {
-    {{"zarr_2", ".zarray", "0.0.0"}, {"zarr_3", "zarr.json", "c/0/0/0"}}};
+const std::array<ChunkedNames, 3> chunked = {{{"zarr_2", {".zarray", "0.0.0"}},
+                                              {"zarr_3", {"zarr.json", "c/0/0/0"}},
+                                              {"image", {"zarr.json", "0/zarr.json", "0/c/0/0/0/0"}}}};
 
-/// Bytes up to the first that is 0 are metadata, those behind it a chunk.
-std::string write_chunked(const Folder& folder, const ChunkedNames& files,
+/// Bytes up to the first that is 0 are those of the first file, and so on; what is left is the last one, a
+/// chunk.
+std::string write_chunked(const Folder& folder, const ChunkedNames& names,
                           std::span<const std::uint8_t> bytes) {
-  const auto end = std::ranges::find(bytes, std::uint8_t{0});
-  const std::size_t before = std::size_t(end - bytes.begin());
-  const std::string path = files.folder;
-  folder.write(path + "/" + files.chunk, bytes.subspan(std::min(bytes.size(), before + 1)));
-  const std::filesystem::path metadata = folder.write(path + "/" + files.metadata, bytes.first(before));
-  return metadata.parent_path();
+  for (const char* const file : names.files) {
+    const bool is_chunk = file == names.files.back();
+    const auto end = is_chunk ? bytes.end() : std::ranges::find(bytes, std::uint8_t{0});
+    const std::size_t length = std::size_t(end - bytes.begin());
+    folder.write(std::string(names.folder) + "/" + file, bytes.first(length));
+    bytes = bytes.subspan(std::min(bytes.size(), length + 1));
+  }
+  return folder.path() + "/" + names.folder;
 }
 
 std::string write_volume(const Folder& folder, std::size_t kind, std::span<const std::uint8_t> bytes) {
@@ -90,9 +94,11 @@ std::string write_volume(const Folder& folder, std::size_t kind, std::span<const
 }
 
 void read(const std::string& path, const ReadableFiles& files, bool at_end) {
-  std::unique_ptr<VolumeFile> file = open_volume(path, {}, files);
-  if (at_end && file->description().time_steps > 1) {
-    FileHints hints;
+  FileHints hints;
+  hints.channel = 0;  // of one or several
+  std::unique_ptr<VolumeFile> file = open_volume(path, hints, files);
+  if (at_end && (file->description().time_steps > 1 || file->description().channels > 1)) {
+    hints.channel = file->description().channels - 1;
     hints.time_step = file->description().time_steps - 1;
     file = open_volume(path, hints, files);
   }

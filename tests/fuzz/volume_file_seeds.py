@@ -7,7 +7,7 @@ import gzip
 import struct
 import zlib
 
-(NRRD, NHDR, NIFTI, NIFTI_GZ, PAIR, VTI, VTI_GZ, RAW, RAW_GZ, UVOL, META_IMAGE, DICOM, TIFF, ZARR_2, ZARR_3) = range(15)
+(NRRD, NHDR, NIFTI, NIFTI_GZ, PAIR, VTI, VTI_GZ, RAW, RAW_GZ, UVOL, META_IMAGE, DICOM, TIFF, ZARR_2, ZARR_3, OME_ZARR) = range(16)
 SCALARS = bytes(range(3 * 4 * 5)) + bytes(3 * 4 * 5)  # of 3 x 4 x 5 shorts
 
 
@@ -120,11 +120,26 @@ def zarr_3(codecs, chunk):
                 f'{{"separator":"/"}}}},"fill_value":0,"codecs":[{codecs}]}}', chunk)
 
 
+LITTLE_ENDIAN = '{"name":"bytes","configuration":{"endian":"little"}}'
+
+
 def zarr_shard():
     index = struct.pack("<QQ", 16, len(SCALARS))
-    codecs = ('{"name":"sharding_indexed","configuration":{"chunk_shape":[5,4,3],"codecs":["bytes"],"index_codecs":["bytes"],'
-              '"index_location":"start"}}')
+    codecs = ('{"name":"sharding_indexed","configuration":{"chunk_shape":[5,4,3],"codecs":[' + LITTLE_ENDIAN
+              + '],"index_codecs":[' + LITTLE_ENDIAN + '],"index_location":"start"}}')
     return zarr_3(codecs, index + SCALARS)
+
+
+def ome_zarr():
+    """A group, and the one level of its image."""
+    group = ('{"zarr_format":3,"node_type":"group","attributes":{"ome":{"version":"0.5","multiscales":[{"axes":['
+             '{"name":"c","type":"channel"},{"name":"z","type":"space","unit":"micrometer"},{"name":"y","type":"space"},'
+             '{"name":"x","type":"space","unit":"nanometer"}],"datasets":[{"path":"0","coordinateTransformations":['
+             '{"type":"scale","scale":[1,2,0.5,250]}]}]}]}}}')
+    level = ('{"zarr_format":3,"node_type":"array","shape":[2,5,4,3],"data_type":"int16","chunk_grid":{"name":"regular",'
+             '"configuration":{"chunk_shape":[1,5,4,3]}},"chunk_key_encoding":{"name":"default"},"fill_value":-7,'
+             '"codecs":[' + LITTLE_ENDIAN + ']}')
+    return group.encode() + b"\0" + level.encode() + b"\0" + SCALARS
 
 
 def seeds():
@@ -155,9 +170,10 @@ def seeds():
         "tiff_imagej": (TIFF, tiff(description=b"ImageJ=1.53\nimages=5\nframes=5\nspacing=2\nunit=um\n")),
         "zarr_2": (ZARR_2, zarr_2()),
         "zarr_2_zlib": (ZARR_2, zarr_2('{"id":"zlib"}', zlib.compress(SCALARS))),
-        "zarr_3": (ZARR_3, zarr_3('"bytes","gzip"', gzip.compress(SCALARS))),
-        "zarr_3_transposed": (ZARR_3, zarr_3('{"name":"transpose","configuration":{"order":[2,0,1]}},"bytes"', SCALARS)),
+        "zarr_3": (ZARR_3, zarr_3(LITTLE_ENDIAN + ',"gzip"', gzip.compress(SCALARS))),
+        "zarr_3_transposed": (ZARR_3, zarr_3('{"name":"transpose","configuration":{"order":[2,0,1]}},' + LITTLE_ENDIAN, SCALARS)),
         "zarr_3_shard": (ZARR_3, zarr_shard()),
+        "ome_zarr": (OME_ZARR, ome_zarr()),
         "raw": (RAW, SCALARS),
         "raw_gzip": (RAW_GZ, gzip.compress(SCALARS + SCALARS)),
     }

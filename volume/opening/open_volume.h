@@ -2,9 +2,10 @@
 // Opens a volume by its name, whatever its format.
 //
 // NRRD, UVOL, TIFF and DICOM are known by their first bytes, MetaImage, NIfTI and VTI by their names (.mha
-// .mhd, and .nii .hdr .img .vti, each of these also with .gz), and a name that begins with "synthetic:" needs
-// no file. Everything else is raw scalars, whose size and type come from the caller or from the name
-// (engine.256x256x110, head_256x256x113_int16be.raw.gz).
+// .mhd, and .nii .hdr .img .vti, each of these also with .gz), folders by what is in them (Zarr, or slices in
+// DICOM or TIFF files), and a name that begins with "synthetic:" needs no file. All other files are raw
+// scalars, whose size and type come from the caller or from the name (engine.256x256x110,
+// head_256x256x113_int16be.raw.gz).
 #pragma once
 
 #include <memory>

@@ -84,8 +84,8 @@ void add_convert(CLI::App& app, std::function<int()>& chosen) {
       app.add_subcommand("convert", "a volume in levels of detail, compressed: a file that is read in part");
   subcommand
       ->add_option("VOLUME", arguments->volume,
-                   "raw, NRRD, NIfTI, MetaImage, DICOM, TIFF, VTI, UVOL, a folder of slices, or synthetic: as "
-                   "for render")
+                   "raw, NRRD, NIfTI, MetaImage, DICOM, TIFF, VTI, UVOL, a folder of slices or of Zarr, or "
+                   "synthetic: as for render")
       ->required();
   subcommand->add_option("-o,--out", arguments->out, "the file to write")
       ->required()

@@ -104,7 +104,7 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
   RenderFigures figures;
   figures.file = scene.load.file;
   figures.time_step = scene.time_step;
-  figures.channel = scene.load.hints.channel;
+  if (scene.file.channels > 1) figures.channel = scene.load.hints.channel;
   figures.description = scene.file;
   figures.mapping = scene.mapping;
   figures.width = scene.image.width;

@@ -14,6 +14,7 @@
 #include "apps/understudy/images/image.h"
 #include "spu/volume/budget/budget.h"
 #include "volume/file/file_error.h"
+#include "volume/file/slices/dicom_headers.h"
 #include "volume/file/synthetic.h"
 #include "volume/hierarchy/level_request.h"
 #include "volume/matrix.h"
@@ -141,8 +142,9 @@ Series described_series(const std::vector<std::string>& files, const volume::Fil
                         bool spacing_is_given) {
   Series series;
   volume::FileDescription& first = series.description;
+  volume::DicomHeaders headers;  // files of one series lie in one folder
   for (const std::string& file : files) {
-    const volume::FileDescription one = volume::open_volume(file, hints)->description();
+    const volume::FileDescription one = volume::open_volume(file, hints, {}, headers)->description();
     append_steps(series.steps, file, one.time_steps);
     if (series.steps.size() > volume::max_time_steps)
       throw volume::FileError(fmt::format("{}: with it the series has {} time steps (at most {})", file,

@@ -125,6 +125,32 @@ TEST(ZarrArray, FoldersThatNobodyTellsOfAreFound) {
   EXPECT_EQ(read_box(*file, whole(*file)), scalars);
 }
 
+TEST(ZarrArray, FoldersAreFoundWhereTheFirstChunksAreEmpty) {
+  const TemporaryFolder folder;
+  const ZarrChoice choice{.separator = '/'};
+  Bytes scalars = random_scalars(array_size, choice.type, 2);
+  std::fill_n(scalars.begin(), array_size[0] * array_size[1] * chunk_size[2] * 2, std::byte{});
+  std::string text = metadata(choice);
+  const std::string told = R"(, "dimension_separator": "/")";
+  write_text(folder.file("a.zarr/.zarray"), text.erase(text.find(told), told.size()));
+  write_chunks(folder.file("a.zarr"), scalars, choice);
+  std::filesystem::remove_all(folder.file("a.zarr/0"));
+  const auto file = open_volume(folder.file("a.zarr"));
+  EXPECT_EQ(read_box(*file, whole(*file)), scalars);
+}
+
+TEST(ZarrArray, PackedValuesMeanWhatAttributesSay) {
+  const TemporaryFolder folder;
+  write_text(folder.file("a.zarr/.zarray"), metadata({}));
+  write_text(folder.file("a.zarr/.zattrs"), R"({"scale_factor": 0.5, "add_offset": -20})");
+  const auto file = open_volume(folder.file("a.zarr"));
+  EXPECT_EQ(file->description().scale, 0.5);
+  EXPECT_EQ(file->description().offset, -20);
+  // Python writes numbers that JSON does not have.
+  write_text(folder.file("a.zarr/.zattrs"), R"({"scale_factor": NaN})");
+  EXPECT_EQ(trouble_with(folder.file("a.zarr")), "");
+}
+
 TEST(ZarrArray, MemoryIsThatOfALayerOfChunks) {
   const TemporaryFolder folder;
   const ZarrChoice choice{};
@@ -133,7 +159,7 @@ TEST(ZarrArray, MemoryIsThatOfALayerOfChunks) {
   const auto file = open_volume(folder.file("a.zarr"));
   const std::size_t chunk = std::size_t(chunk_size[0] * chunk_size[1] * chunk_size[2]) * 2;
   EXPECT_GE(file->memory_to_read(whole(*file)), 10 * chunk);  // 3 x 3, and one compressed
-  EXPECT_LE(file->memory_to_read(whole(*file)), 12 * chunk);
+  EXPECT_LE(file->memory_to_read(whole(*file)), 12 * chunk + 65536);
 }
 
 TEST(ZarrArray, DimensionsHaveTheNamesThatTheyAreGiven) {
@@ -224,6 +250,42 @@ TEST(OmeZarr, LevelsChannelsTimeStepsAndSpacing) {
   EXPECT_THAT(trouble_with(folder.file("a.zarr"), beyond), HasSubstr("there is no channel 3 in it; it has 3"));
   beyond.level = 2;
   EXPECT_THAT(trouble_with(folder.file("a.zarr"), beyond), HasSubstr("it has no level 2; it has 2"));
+}
+
+/// `axes` with a comma behind them, or nothing.
+std::string image_text(const std::string& version, const std::string& axes) {
+  return fmt::format(R"({{"multiscales": [{{"version": "{}", {} "datasets": [{{"path": "scale0/image"}}]}}]}})",
+                     version, axes);
+}
+
+TEST(OmeZarr, AxesUnitsAndVersions) {
+  const TemporaryFolder folder;
+  const ZarrChoice choice{};
+  write_text(folder.file("a.zarr/.zgroup"), "{}");
+  write_text(folder.file("a.zarr/scale0/.zgroup"), "{}");
+  write_text(folder.file("a.zarr/scale0/image/.zarray"), metadata(choice));
+  const auto with = [&](const std::string& version, const std::string& axes) {
+    write_text(folder.file("a.zarr/.zattrs"), image_text(version, axes));
+    return trouble_with(folder.file("a.zarr"));
+  };
+  const auto axes_in = [](const std::string& z, const std::string& yx) {
+    return fmt::format(R"("axes": [{{"name": "Z", "type": "space"{}}}, {{"name": "Y", "type": "space"{}}},
+                                   {{"name": "X", "type": "space"{}}}],)",
+                       z, yx, yx);
+  };
+  const std::string furlong = R"(, "unit": "furlong")", micrometer = R"(, "unit": "micrometer")";
+  EXPECT_EQ(with("0.4", axes_in("", "")), "");
+  EXPECT_EQ(with("0.4", axes_in(furlong, furlong)), "");
+  EXPECT_EQ(with("0.2", ""), "");
+  EXPECT_THAT(with("0.4", axes_in(furlong, micrometer)), HasSubstr("one of its axes is in 'furlong'"));
+  EXPECT_THAT(with("0.4", ""), HasSubstr("it tells no axes, as OME-Zarr 0.4 has to"));
+  EXPECT_THAT(with("0.6", axes_in("", "")), HasSubstr("it is of OME-Zarr 0.6, of which 0.1 to 0.5 are read"));
+  EXPECT_THAT(with("0.4", R"("axes": ["z", "q", "x"],)"), HasSubstr("it has an axis 'q'"));
+  EXPECT_THAT(with("0.4", R"("axes": ["z", "y"],)"), HasSubstr("its array has 3 axes, and 2 are told"));
+  EXPECT_THAT(with("0.4", R"("axes": ["z", "y", "y"],)"), HasSubstr("one of its axes is told twice"));
+  EXPECT_THAT(with("0.4", R"("axes": ["t", "z", "y"],)"), HasSubstr("it has no axis x"));
+  // A level alone does not know its axes, wherever the working folder is.
+  EXPECT_THAT(trouble_with(folder.file("a.zarr/scale0/image")), HasSubstr("it is a level of the image"));
 }
 
 TEST(ZarrArray, WhatIsNoVolumeSaysWhy) {

@@ -311,7 +311,7 @@ TEST(ZarrVersion3, WhatIsNotReadSaysWhy) {
   EXPECT_THAT(changed("little", "middle"), HasSubstr(R"(its byte order is "middle")"));
   EXPECT_THAT(changed(R"("endian": "little")", ""), HasSubstr("its byte order is null"));
   EXPECT_THAT(changed("[11, 21, 37]", "[11, 21, 37.5]"), HasSubstr("a length in it is 37.5"));
-  for (const char* const fill : {"70000", "-1", "0.5e9", "\"NaN\"", "\"0x00\""})
+  for (const char* const fill : {"70000", "-1", "0.5e9", "0.5", "\"NaN\"", "\"0x00\""})
     EXPECT_THAT(changed(R"("fill_value": 0)", fmt::format(R"("fill_value": {})", fill)),
                 HasSubstr(fmt::format("its fill value {} is none of type u16",
                                       std::string_view(fill) == "0.5e9" ? "500000000.0" : fill)));
@@ -322,7 +322,8 @@ TEST(ZarrVersion3, WhatIsNotReadSaysWhy) {
   EXPECT_THAT(with_codecs(bytes + R"(, {"name": "bz2"})"), HasSubstr("compressed by 'bz2' are not read"));
   EXPECT_THAT(with_codecs(bytes + R"(, "zstd", "gzip")"), HasSubstr("compresses what is compressed already"));
   EXPECT_THAT(with_codecs(bytes + R"(, "crc32c", "gzip")"), HasSubstr("comes behind a checksum"));
-  EXPECT_THAT(with_codecs(R"("zstd", )" + bytes), HasSubstr("is not where it may be"));
+  EXPECT_THAT(with_codecs(R"("zstd", )" + bytes), HasSubstr("its codec 'zstd' is not read before"));
+  EXPECT_THAT(with_codecs(bytes + ", " + bytes), HasSubstr("comes behind one that made bytes"));
   EXPECT_THAT(with_codecs(""), HasSubstr("no codec makes bytes of its elements"));
   EXPECT_THAT(with_codecs(R"({"name": "transpose", "configuration": {"order": [0, 0, 1]}}, )" + bytes),
               HasSubstr("is no permutation"));
@@ -335,6 +336,82 @@ TEST(ZarrVersion3, WhatIsNotReadSaysWhy) {
               HasSubstr("its shards have more than"));
   write_text(folder.file("b/zarr.json"), R"({"zarr_format": 3, "node_type": "group"})");
   EXPECT_THAT(trouble_with(folder.file("b")), HasSubstr("it is a group without an image"));
+}
+
+/// 2 x 3 x 4 scalars in one chunk, whose axes lie in another order.
+std::string small_array(const std::string& codecs) {
+  return fmt::format(
+      R"({{"zarr_format": 3, "node_type": "array", "shape": [2, 3, 4], "data_type": "uint8", "chunk_grid": )"
+      R"({{"name": "regular", "configuration": {{"chunk_shape": [2, 3, 4]}}}}, )"
+      R"("chunk_key_encoding": {{"name": "default"}}, "fill_value": 9, "codecs": [{}]}})",
+      codecs);
+}
+
+TEST(ZarrVersion3, TranspositionsThatAreNotTheirOwnInverse) {
+  const TemporaryFolder folder;
+  Bytes scalars(24), turned, turned_twice;
+  for (int i = 0; i < 24; ++i) scalars[std::size_t(i)] = std::byte(i);
+  const auto at = [&](int z, int y, int x) { return scalars[std::size_t((z * 3 + y) * 4 + x)]; };
+  // [1, 2, 0]: y, x, z, the slowest first; then [0, 2, 1]: y, z, x.
+  for (int y = 0; y < 3; ++y)
+    for (int x = 0; x < 4; ++x)
+      for (int z = 0; z < 2; ++z) turned.push_back(at(z, y, x));
+  for (int y = 0; y < 3; ++y)
+    for (int z = 0; z < 2; ++z)
+      for (int x = 0; x < 4; ++x) turned_twice.push_back(at(z, y, x));
+  const std::string once = R"({"name": "transpose", "configuration": {"order": [1, 2, 0]}}, )",
+                    again = R"({"name": "transpose", "configuration": {"order": [0, 2, 1]}}, )";
+  write_text(folder.file("a/zarr.json"), small_array(once + R"("bytes")"));
+  write_bytes(folder.file("a/c/0/0/0"), turned);
+  write_text(folder.file("b/zarr.json"), small_array(once + again + R"("bytes")"));
+  write_bytes(folder.file("b/c/0/0/0"), turned_twice);
+  for (const char* const name : {"a", "b"}) {
+    const auto file = open_volume(folder.file(name));
+    EXPECT_EQ(read_box(*file, whole(*file)), scalars);
+  }
+}
+
+TEST(ZarrVersion3, AnIndexMayBeBigEndianAndWithoutAChecksum) {
+  const TemporaryFolder folder;
+  write_text(
+      folder.file("a/zarr.json"),
+      small_array(
+          R"({"name": "sharding_indexed", "configuration": {"chunk_shape": [2, 3, 2], "codecs": ["bytes"], )"
+          R"("index_codecs": [{"name": "bytes", "configuration": {"endian": "big"}}]}})"));
+  Bytes shard(12, std::byte{5});
+  for (const std::uint64_t number : {~std::uint64_t{}, ~std::uint64_t{}, std::uint64_t{0}, std::uint64_t{12}})
+    for (int i = 7; i >= 0; --i) shard.push_back(std::byte(number >> (8 * i)));
+  write_bytes(folder.file("a/c/0/0/0"), shard);
+  Bytes expected;
+  for (int i = 0; i < 24; ++i) expected.push_back(i % 4 < 2 ? std::byte{9} : std::byte{5});
+  const auto file = open_volume(folder.file("a"));
+  EXPECT_EQ(read_box(*file, whole(*file)), expected);
+}
+
+TEST(ZarrVersion3, MetadataThatNestsDeeplyIsRefused) {
+  const TemporaryFolder folder;
+  const std::string deep = std::string(500'000, '[') + std::string(500'000, ']');
+  for (const char* const name : {"attributes", "fill_value", "codecs", "dimension_names"}) {
+    write_text(folder.file("a/zarr.json"),
+               fmt::format(R"({{"zarr_format": 3, "node_type": "array", "{}": {}}})", name, deep));
+    EXPECT_THAT(trouble_with(folder.file("a")), HasSubstr("its JSON is more than 64 levels deep"));
+  }
+}
+
+TEST(ZarrVersion3, ArraysThatTakeMoreWorkThanTheyHaveScalarsAreRefused) {
+  const TemporaryFolder folder;
+  const Version3 choice{{.type = ScalarType::u8}};
+  const auto trouble = [&](const std::array<int, 3>& chunk, const std::array<int, 3>& shard,
+                           const std::string& shape) {
+    std::string text = metadata(choice, shard, sharding(choice, "end", numbers(chunk)));
+    const std::string own = numbers(array_size);
+    write_text(folder.file("a/zarr.json"), text.replace(text.find(own), own.size(), shape));
+    return trouble_with(folder.file("a"));
+  };
+  EXPECT_THAT(trouble({1, 1, 1}, {1, 4096, 256}, "[256, 4096, 4096]"), HasSubstr("chunks of 1 scalars"));
+  EXPECT_THAT(trouble({512, 1, 1}, {512, 1, 1 << 20}, "[1, 4096, 16384]"),
+              HasSubstr("MiB of chunks and indices"));
+  EXPECT_EQ(trouble({32, 32, 32}, {1024, 1024, 1024}, "[3, 5, 7]"), "");
 }
 
 TEST(ZarrVersion3, DamagedChunksAndIndicesAreErrors) {

@@ -75,7 +75,6 @@ void decode_chunk(ChunkCodec codec, std::span<const std::byte> packed, std::span
 
 std::span<const std::byte> without_checksum(std::span<const std::byte> bytes) {
   using Crc32c = boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, true>;
-  constexpr std::size_t checksum_bytes = 4;
   if (bytes.size() < checksum_bytes) fail_chunk();
   const std::span<const std::byte> checked = bytes.first(bytes.size() - checksum_bytes);
   Crc32c checksum;

@@ -14,6 +14,8 @@ enum class ChunkCodec : std::uint8_t { none, blosc, zlib, zstd, lz4 };
 /// Fills `chunk`. Throws std::runtime_error, which says why, unless `packed` decodes to exactly so many bytes.
 void decode_chunk(ChunkCodec codec, std::span<const std::byte> packed, std::span<std::byte> chunk);
 
+constexpr std::size_t checksum_bytes = 4;
+
 /// All but the last four bytes, which are the CRC-32C of those before, little-endian. Throws std::runtime_error
 /// where they are not.
 std::span<const std::byte> without_checksum(std::span<const std::byte> bytes);

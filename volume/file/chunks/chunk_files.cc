@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <filesystem>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -16,11 +15,7 @@ namespace understudy::volume {
 
 namespace {
 
-constexpr std::size_t index_entry_bytes = 16, checksum_bytes = 4;
-/// Indices of shards that are kept: these may need so many entries together.
-constexpr std::size_t most_index_entries = std::size_t(1) << 18;
-/// What is compressed may be a little longer than what it is of.
-constexpr std::size_t most_overhead = std::size_t(1) << 16;
+constexpr std::size_t index_entry_bytes = 16;
 
 void reverse_bytes(std::span<std::byte> scalars, std::size_t bytes) {
   for (std::size_t at = 0; at < scalars.size(); at += bytes)
@@ -62,9 +57,10 @@ std::vector<std::byte> ChunkFiles::scalars_of(std::span<const std::int64_t> chun
   return scalars;
 }
 
-std::size_t ChunkFiles::memory_to_read() const {
-  const std::size_t indices = array_.shards ? std::max(most_index_entries, chunks_in_shard()) : 0;
-  return decoded_bytes_ + indices * sizeof(std::optional<Place>);
+std::size_t ChunkFiles::memory_to_read(std::size_t shards) const {
+  // One more, as it lies in the file.
+  const std::size_t indices = array_.shards ? shards + 1 : 0;
+  return most_packed_bytes() + indices * chunks_in_shard() * index_entry_bytes;
 }
 
 std::string ChunkFiles::path_of(std::span<const std::int64_t> chunk) const {
@@ -92,15 +88,14 @@ std::optional<std::vector<std::byte>> ChunkFiles::packed_in_shard(std::span<cons
     shard.push_back(chunk[axis] / count);
     number = number * std::size_t(count) + std::size_t(chunk[axis] % count);
   }
-  const std::optional<Place> place = index_of(shard, *file)[number];
-  if (!place) return std::nullopt;
-  return read_bytes(*file, *place);
+  const Place place = index_of(shard, *file)[number];
+  if (place == not_there) return std::nullopt;
+  return read_bytes(*file, place);
 }
 
 const ChunkFiles::ShardIndex& ChunkFiles::index_of(const std::vector<std::int64_t>& shard, ByteSource& file) {
   const auto found = indices_.find(shard);
   if (found != indices_.end()) return found->second;
-  if ((indices_.size() + 1) * chunks_in_shard() > most_index_entries) indices_.clear();
   return indices_.emplace(shard, read_index(file)).first->second;
 }
 
@@ -122,14 +117,12 @@ ChunkFiles::ShardIndex ChunkFiles::read_index(ByteSource& file) {
   } catch (const std::runtime_error&) {
     fail("the index of its chunks is damaged");
   }
-  constexpr std::uint64_t not_there = std::numeric_limits<std::uint64_t>::max();
   ShardIndex index(entries);
   for (std::size_t i = 0; i < entries; ++i) {
     const Place place{
         number_at(checked, i * index_entry_bytes, shards.index_big_endian),
         number_at(checked, i * index_entry_bytes + sizeof(std::uint64_t), shards.index_big_endian)};
-    if (place.offset == not_there && place.bytes == not_there) continue;
-    if (place.bytes > size || place.offset > size - place.bytes)
+    if (place != not_there && (place.bytes > size || place.offset > size - place.bytes))
       fail("the index of its chunks leads beyond its end");
     index[i] = place;
   }
@@ -137,7 +130,7 @@ ChunkFiles::ShardIndex ChunkFiles::read_index(ByteSource& file) {
 }
 
 std::vector<std::byte> ChunkFiles::read_bytes(ByteSource& file, Place place) {
-  if (place.bytes > 2 * decoded_bytes_ + most_overhead)
+  if (place.bytes > most_packed_bytes())
     throw FileError(fmt::format("{}: Zarr: a chunk of {} bytes has {}; get it again", file.path(),
                                 decoded_bytes_, place.bytes));
   std::vector<std::byte> bytes(static_cast<std::size_t>(place.bytes));
@@ -146,8 +139,15 @@ std::vector<std::byte> ChunkFiles::read_bytes(ByteSource& file, Place place) {
   return bytes;
 }
 
+/// What is compressed may be a little longer than what it is of.
+std::size_t ChunkFiles::most_packed_bytes() const {
+  constexpr std::size_t most_overhead = std::size_t(1) << 16;
+  return decoded_bytes_ + decoded_bytes_ / 2 + most_overhead;
+}
+
 std::size_t ChunkFiles::chunks_in_shard() const {
   std::size_t chunks = 1;
+  if (!array_.shards) return chunks;
   for (const std::int64_t count : array_.shards->chunks) chunks *= std::size_t(count);
   return chunks;
 }

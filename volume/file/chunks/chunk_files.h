@@ -31,16 +31,20 @@ class ChunkFiles {
 
   /// Of one chunk, in bytes.
   std::size_t decoded_bytes() const { return decoded_bytes_; }
-  /// What is in use at most while a chunk is read, in bytes, beyond the chunk itself.
-  std::size_t memory_to_read() const;
+  /// What is in use at most while chunks of `shards` shards are read, in bytes, beyond the chunks themselves.
+  std::size_t memory_to_read(std::size_t shards) const;
   std::uint64_t bytes_read() const { return bytes_read_; }
 
  private:
   struct Place {
     std::uint64_t offset = 0, bytes = 0;  ///< in the file
+
+    bool operator==(const Place&) const = default;
   };
-  /// Where the chunks of a shard are, and nothing for those that are not there.
-  using ShardIndex = std::vector<std::optional<Place>>;
+  /// What an index has for a chunk that is not there.
+  static constexpr Place not_there{~std::uint64_t{}, ~std::uint64_t{}};
+  /// Where the chunks of a shard are.
+  using ShardIndex = std::vector<Place>;
 
   std::string path_of(std::span<const std::int64_t> file) const;
   /// Nothing where the chunk is not there.
@@ -49,12 +53,14 @@ class ChunkFiles {
   const ShardIndex& index_of(const std::vector<std::int64_t>& shard, ByteSource& file);
   ShardIndex read_index(ByteSource& file);
   std::vector<std::byte> read_bytes(ByteSource& file, Place place);
+  std::size_t most_packed_bytes() const;
   std::size_t chunks_in_shard() const;
 
   std::string folder_;
   ZarrArray array_;
   ReadableFiles files_;
   std::size_t decoded_bytes_ = 0;
+  /// Each is read once: those of neighbours in a row may be long.
   std::map<std::vector<std::int64_t>, ShardIndex> indices_;
   std::uint64_t bytes_read_ = 0;
 };

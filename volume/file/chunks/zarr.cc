@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <map>
-#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -38,15 +38,15 @@ class ZarrVolume : public VolumeFile {
       : VolumeFile(description), chunks_(std::move(chunks)), fixed_(array().shape.size()) {
     std::vector<std::size_t> strides(array().shape.size());
     std::size_t stride = 1;
-    for (const std::size_t axis : array().encoding.order | std::views::reverse) {
-      strides[axis] = stride;
-      stride *= std::size_t(array().chunks[axis]);
+    const std::vector<std::size_t>& order = array().encoding.order;
+    for (auto axis = order.rbegin(); axis != order.rend(); ++axis) {
+      strides[*axis] = stride;
+      stride *= std::size_t(array().chunks[*axis]);
     }
     for (std::size_t axis = 0; axis < image.axes.size(); ++axis) {
       const ZarrAxis kind = image.axes[axis];
       if (kind >= ZarrAxis::z) {
-        axes_[std::size_t(ZarrAxis::x) - std::size_t(kind)] = {array().shape[axis], array().chunks[axis],
-                                                               strides[axis], axis, true};
+        axes_[volume_axis(kind)] = {array().shape[axis], array().chunks[axis], strides[axis], axis, true};
         continue;
       }
       const std::int64_t chosen = kind == ZarrAxis::time ? time_step : channel;
@@ -74,20 +74,29 @@ class ZarrVolume : public VolumeFile {
 
   std::uint64_t bytes_read() const override { return chunks_.bytes_read(); }
   std::size_t memory_to_read(const TexelBox& box) const override {
-    // Those of one layer.
-    std::size_t chunks = 1;
-    for (std::size_t k = 0; k < 2; ++k) {
-      const std::int64_t in_all = (axes_[k].length + axes_[k].chunk - 1) / axes_[k].chunk;
-      chunks *= std::size_t(std::min<std::int64_t>(in_all, (box.high[k] - box.low[k]) / axes_[k].chunk + 2));
+    // Chunks of one layer, and indices of all shards.
+    std::size_t chunks = 1, shards = 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int64_t in_shard =
+          array().shards && axes_[k].there ? array().shards->chunks[axes_[k].number] : 1;
+      const std::size_t across = parts_across(box, k, axes_[k].chunk);
+      if (k < 2) chunks *= across;
+      shards *= parts_across(box, k, axes_[k].chunk * in_shard);
     }
     constexpr std::size_t entry_bytes = 128;
-    return chunks * (chunks_.decoded_bytes() + entry_bytes) + chunks_.memory_to_read();
+    return chunks * (chunks_.decoded_bytes() + entry_bytes) + chunks_.memory_to_read(shards);
   }
 
  private:
   std::size_t scalar_bytes() const { return bytes_per_scalar(description().type); }
 
   const ZarrArray& array() const { return chunks_.array(); }
+
+  /// How many parts of `length` a box lies in at most, wherever it begins.
+  std::size_t parts_across(const TexelBox& box, std::size_t k, std::int64_t length) const {
+    const std::int64_t in_all = (axes_[k].length + length - 1) / length;
+    return std::size_t(std::min<std::int64_t>(in_all, (box.high[k] - box.low[k]) / length + 2));
+  }
 
   const std::vector<std::byte>& decoded(const Index& chunk) {
     const auto found = decoded_.find(chunk);
@@ -130,27 +139,45 @@ class ZarrVolume : public VolumeFile {
   std::map<Index, std::vector<std::byte>> decoded_;
 };
 
-void check_files(const ZarrArray& array, const std::string& folder) {
-  constexpr double least_scalars = 512, most_files = 1 << 20;
-  double files = 1, scalars = 1;
+/// What all of the volume takes to read, of one time step and channel: chunks may hold others too, and indices
+/// of shards entries for what lies outside of the array.
+void check_work(const ZarrImage& image, const ZarrArray& array, const std::string& folder) {
+  constexpr double most_small_chunks = 1 << 20, least_scalars = 512;
+  constexpr double allowed_bytes = double(std::uint64_t(4) << 30), allowed_times = 64, index_entry_bytes = 16;
+  double texels = 1, chunks = 1, scalars = 1, shards = 1;
+  double decoded = double(bytes_per_scalar(array.type)), entries = 1;
   for (std::size_t axis = 0; axis < array.shape.size(); ++axis) {
-    const double length = double(array.chunks[axis]) * (array.shards ? double(array.shards->chunks[axis]) : 1);
-    files *= double(array.shape[axis]) / length;
+    const double in_shard = array.shards ? double(array.shards->chunks[axis]) : 1;
+    const double length = double(array.chunks[axis]);
+    decoded *= length;
+    entries *= in_shard;
+    if (image.axes[axis] < ZarrAxis::z) continue;
+    texels *= double(array.shape[axis]);
     scalars *= length;
+    chunks *= std::ceil(double(array.shape[axis]) / length);
+    shards *= std::ceil(double(array.shape[axis]) / (length * in_shard));
   }
-  if (scalars < least_scalars && files > most_files)
-    throw FileError(fmt::format("{}: Zarr: it has {:.0f} files of {} scalars; write larger chunks", folder,
-                                files, scalars));
+  if (scalars < least_scalars && chunks > most_small_chunks)
+    throw FileError(fmt::format("{}: Zarr: it has {:.0f} chunks of {} scalars; write larger ones", folder,
+                                chunks, scalars));
+  const double bytes = chunks * decoded + (array.shards ? shards * entries * index_entry_bytes : 0);
+  if (bytes > std::max(allowed_bytes, allowed_times * texels * double(bytes_per_scalar(array.type))))
+    throw FileError(
+        fmt::format("{}: Zarr: to read {:.0f} scalars takes {:.0f} MiB of chunks and indices; write chunks "
+                    "and shards of fewer time steps and channels, no larger than the array",
+                    folder, texels, bytes / (1 << 20)));
 }
 
 void check_axes(const ZarrImage& image, const ZarrArray& array, const std::string& folder) {
+  const auto fail = [&](const std::string& what) {
+    throw FileError(fmt::format("{}: Zarr: {}; check its metadata", folder, what));
+  };
+  if (image.axes.size() != array.shape.size())
+    fail(fmt::format("its array has {} axes, and {} are told", array.shape.size(), image.axes.size()));
   std::vector<ZarrAxis> sorted = image.axes;
   std::ranges::sort(sorted);
-  const bool twice = std::ranges::adjacent_find(sorted) != sorted.end();
-  if (image.axes.size() != array.shape.size() || twice ||
-      std::ranges::find(sorted, ZarrAxis::x) == sorted.end())
-    throw FileError(fmt::format("{}: Zarr: its array has {} axes, of which {} are told; check its metadata",
-                                folder, array.shape.size(), image.axes.size()));
+  if (std::ranges::adjacent_find(sorted) != sorted.end()) fail("one of its axes is told twice");
+  if (std::ranges::find(sorted, ZarrAxis::x) == sorted.end()) fail("it has no axis x");
 }
 
 }  // namespace
@@ -160,7 +187,7 @@ std::unique_ptr<VolumeFile> open_zarr(const std::string& folder, const FileHints
   const ZarrImage image = zarr_image(folder, hints.level, files);
   ZarrArray array = zarr_array(image.folder, files);
   check_axes(image, array, folder);
-  check_files(array, folder);
+  check_work(image, array, folder);
   std::array<std::int64_t, 3> size{1, 1, 1};
   std::int64_t steps = 1, channels = 1;
   for (std::size_t axis = 0; axis < image.axes.size(); ++axis) {
@@ -170,13 +197,21 @@ std::unique_ptr<VolumeFile> open_zarr(const std::string& folder, const FileHints
     else if (kind == ZarrAxis::channel)
       channels = array.shape[axis];
     else
-      size[std::size_t(ZarrAxis::x) - std::size_t(kind)] = array.shape[axis];
+      size[volume_axis(kind)] = array.shape[axis];
   }
   FileDescription description;
+  constexpr std::int64_t longest = 16384;
+  if (image.levels > hints.level + 1 && std::ranges::max(size) > longest)
+    throw FileError(
+        fmt::format("{}: Zarr: level {} has {} x {} x {} scalars, more than {} along an axis; take a "
+                    "coarser one: --level {}",
+                    folder, hints.level, size[0], size[1], size[2], longest, hints.level + 1));
   checked_bytes(size, array.type, folder);
   std::ranges::transform(size, description.size.begin(), [](std::int64_t length) { return int(length); });
   description.spacing = image.spacing;
   description.type = array.type;
+  description.scale = image.scale;
+  description.offset = image.offset;
   description.time_steps = checked_time_steps(steps, folder);
   description.channels = int(channels);
   check_time_step(hints.time_step, description.time_steps, folder);

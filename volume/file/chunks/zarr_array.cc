@@ -34,6 +34,24 @@ ChunkCodec compressor_of_version_2(const json& compressor, const std::string& pa
   return compressor.is_null() ? ChunkCodec::none : zarr_codec(compressor.at("id").get<std::string>(), path);
 }
 
+/// Older programs wrote folders without saying so. The first ones may be absent, where all of them is empty.
+bool has_folders(const ZarrArray& array, const std::string& folder, const ReadableFiles& files) {
+  constexpr std::int64_t most_looked_at = 4096;
+  if (array.shape.size() < 2 || array.chunks.empty() || array.chunks[0] < 1) return false;
+  for (std::int64_t i = 0; i < std::min(most_looked_at, array.shape[0] / array.chunks[0] + 1); ++i)
+    if (files.is_folder(path_in(folder, std::to_string(i)))) return true;
+  return false;
+}
+
+char separator_of_version_2(const json& read, const ZarrArray& array, const std::string& folder,
+                            const std::string& path, const ReadableFiles& files) {
+  const json told = read.value("dimension_separator", json());
+  if (told.is_null()) return has_folders(array, folder, files) ? '/' : '.';
+  if (told != "." && told != "/")
+    fail_zarr(path, fmt::format("{} between the numbers of a chunk is neither '.' nor '/'", zarr_text(told)));
+  return told.get<std::string>().front();
+}
+
 ZarrArray array_of_version_2(const json& read, const std::string& folder, const std::string& path,
                              const ReadableFiles& files) {
   ZarrArray array;
@@ -44,9 +62,7 @@ ZarrArray array_of_version_2(const json& read, const std::string& folder, const 
   array.encoding.order.resize(array.shape.size());
   std::iota(array.encoding.order.begin(), array.encoding.order.end(), std::size_t(0));
   if (read.value("order", "C") == "F") std::ranges::reverse(array.encoding.order);
-  // Older programs wrote folders without saying so.
-  const bool has_folders = array.shape.size() > 1 && files.is_folder(path_in(folder, "0"));
-  array.names.separator = read.value("dimension_separator", has_folders ? "/" : ".") == "/" ? '/' : '.';
+  array.names.separator = separator_of_version_2(read, array, folder, path, files);
   if (read.contains("filters") && !read.at("filters").is_null() && !read.at("filters").empty())
     fail_zarr(path, "its chunks went through filters; write them without");
   array.encoding.codec = compressor_of_version_2(read.at("compressor"), path);

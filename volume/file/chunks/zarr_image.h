@@ -3,6 +3,7 @@
 // 0.5.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -19,7 +20,14 @@ struct ZarrImage {
   std::string folder;  ///< of the array
   std::vector<ZarrAxis> axes;
   Vec3 spacing{1, 1, 1};
+  int levels = 1;
+  double scale = 1, offset = 0;  ///< a scalar s means scale * s + offset
 };
+
+/// Which axis of a volume that is (x: 0), of z, y and x.
+constexpr std::size_t volume_axis(ZarrAxis axis) {
+  return std::size_t(ZarrAxis::x) - std::size_t(axis);
+}
 
 /// Whether a folder is an array or a group of Zarr, of any version.
 bool is_zarr(const std::string& folder, const ReadableFiles& files);

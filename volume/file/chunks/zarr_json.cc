@@ -21,7 +21,10 @@ namespace understudy::volume {
 
 namespace {
 
-constexpr std::size_t most_metadata_bytes = std::size_t(1) << 20;
+/// Labels and properties of an image may be long.
+constexpr std::size_t most_metadata_bytes = std::size_t(8) << 20;
+/// Copying a value takes a function call for each level.
+constexpr int deepest = 64;
 
 template <typename Scalar>
 std::vector<std::byte> bytes_of(Scalar scalar) {
@@ -44,7 +47,8 @@ std::optional<Scalar> scalar_of(const nlohmann::json& number) {
       return Scalar(number.get<std::int64_t>());
     // Some programs write 0.0; all doubles up to here are exact.
     constexpr double exact = 9007199254740992;
-    if (number.is_number_float() && std::abs(value) <= exact && std::in_range<Scalar>(std::int64_t(value)))
+    if (number.is_number_float() && std::abs(value) <= exact && value == std::trunc(value) &&
+        std::in_range<Scalar>(std::int64_t(value)))
       return Scalar(value);
     return std::nullopt;
   }
@@ -84,10 +88,17 @@ nlohmann::json json_in(const std::string& folder, const char* name, const Readab
   const std::unique_ptr<ByteSource> file = open_file_if_there(path, files);
   if (!file) return {};
   const std::uint64_t bytes = file->size().value_or(0);
-  if (bytes > most_metadata_bytes) fail_zarr(path, "its JSON is too long; get it again");
+  if (bytes > most_metadata_bytes)
+    fail_zarr(path, fmt::format("its JSON has more than {} MiB; take out what is not needed to show it",
+                                most_metadata_bytes >> 20));
   std::string text(std::size_t(bytes), '\0');
   text.resize(file->read(0, std::as_writable_bytes(std::span(text))));
-  nlohmann::json read = nlohmann::json::parse(text, nullptr, false);
+  const auto check_depth = [&](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
+    if (depth > deepest)
+      fail_zarr(path, fmt::format("its JSON is more than {} levels deep; get it again", deepest));
+    return true;
+  };
+  nlohmann::json read = nlohmann::json::parse(text, check_depth, false);
   if (!read.is_object()) fail_zarr(path, "it is no JSON object; get it again");
   return read;
 }
@@ -106,11 +117,17 @@ ChunkCodec zarr_codec(const std::string& name, const std::string& path) {
   return found->second;
 }
 
+std::string zarr_text(const nlohmann::json& value) {
+  constexpr std::size_t most_shown = 60;
+  const std::string text = value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return text.size() <= most_shown ? text : text.substr(0, most_shown) + "...";
+}
+
 std::vector<std::int64_t> zarr_lengths(const nlohmann::json& numbers, const std::string& path) {
   std::vector<std::int64_t> lengths;
   for (const nlohmann::json& number : numbers) {
     if (!number.is_number_integer())
-      fail_zarr(path, fmt::format("a length in it is {}; get it again", number.dump()));
+      fail_zarr(path, fmt::format("a length in it is {}; get it again", zarr_text(number)));
     lengths.push_back(number.get<std::int64_t>());
   }
   return lengths;
@@ -121,8 +138,8 @@ std::vector<std::byte> zarr_fill_value(const nlohmann::json& fill, ScalarType ty
   const auto read = [&]<typename Scalar>(Scalar) {
     const std::optional<Scalar> scalar = fill_of<Scalar>(fill);
     if (!scalar)
-      fail_zarr(path,
-                fmt::format("its fill value {} is none of type {}; get it again", fill.dump(), name_of(type)));
+      fail_zarr(path, fmt::format("its fill value {} is none of type {}; get it again", zarr_text(fill),
+                                  name_of(type)));
     bytes = bytes_of(*scalar);
   };
   if (type == ScalarType::u64)

@@ -20,7 +20,8 @@ namespace understudy::volume {
 
 [[noreturn]] void fail_zarr(const std::string& path, const std::string& what);
 
-/// Null where there is no such file. Throws FileError where it is no object.
+/// Null where there is no such file. Throws FileError where it is no object, or nests deeper than metadata
+/// does.
 nlohmann::json json_in(const std::string& folder, const char* name, const ReadableFiles& files);
 
 /// What `function` gives; what nlohmann-json throws of values of other types than they should have as a
@@ -36,6 +37,9 @@ auto with_json(const std::string& path, const Function& function) {
 
 /// Throws FileError for a codec that is not read.
 ChunkCodec zarr_codec(const std::string& name, const std::string& path);
+
+/// A value as messages show it: its beginning.
+std::string zarr_text(const nlohmann::json& value);
 
 /// Whole numbers, such as lengths along axes. Throws FileError.
 std::vector<std::int64_t> zarr_lengths(const nlohmann::json& numbers, const std::string& path);

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <string_view>
+#include <utility>
 
 #include "volume/file/chunks/zarr_json.h"
 
@@ -68,15 +69,19 @@ ChunkNames chunk_names_of(const json& encoding, const std::string& path) {
 /// Axes that lie in `order` in a chunk, behind a transposition.
 std::vector<std::size_t> transposed(const std::vector<std::size_t>& order, const json& permutation,
                                     const std::string& path) {
-  const auto places = permutation.get<std::vector<std::size_t>>();
-  std::vector<std::size_t> sorted = places;
+  // Drafts of the format had the orders of NumPy.
+  if (permutation == "C") return order;
+  if (permutation == "F") return {order.rbegin(), order.rend()};
+  const std::vector<std::int64_t> places = zarr_lengths(permutation, path);
+  std::vector<std::int64_t> sorted = places;
   std::ranges::sort(sorted);
-  std::vector<std::size_t> all(order.size());
-  std::iota(all.begin(), all.end(), std::size_t(0));
+  std::vector<std::int64_t> all(order.size());
+  std::iota(all.begin(), all.end(), std::int64_t(0));
   if (sorted != all)
     fail_zarr(path, "a transposition of its chunks is no permutation of the axes; get it again");
   std::vector<std::size_t> turned;
-  for (const std::size_t place : places) turned.push_back(order[place]);
+  turned.reserve(places.size());
+  for (const std::int64_t place : places) turned.push_back(order[std::size_t(place)]);
   return turned;
 }
 
@@ -85,7 +90,8 @@ bool is_big_endian(const json& configuration, std::size_t bytes, const std::stri
   const json endian = configuration.value("endian", json());
   if (endian.is_null() && bytes == 1) return false;
   if (endian != "little" && endian != "big")
-    fail_zarr(path, fmt::format("its byte order is {}, neither little nor big; get it again", endian.dump()));
+    fail_zarr(path,
+              fmt::format("its byte order is {}, neither little nor big; get it again", zarr_text(endian)));
   return endian == "big";
 }
 
@@ -108,8 +114,12 @@ ChunkEncoding encoding_of(const json& codecs, std::size_t axes, std::size_t scal
     };
     if (codec.name == "sharding_indexed") fail("is not alone, or lies in another; write chunks without it");
     if (encoding.checksum) fail("comes behind a checksum; write the checksum last");
-    if ((codec.name == "transpose" || codec.name == "bytes") == are_bytes)
-      fail("is not where it may be among its codecs; get it again");
+    const bool makes_bytes = codec.name == "transpose" || codec.name == "bytes";
+    if (makes_bytes && are_bytes) fail("comes behind one that made bytes of the elements; get it again");
+    if (!makes_bytes && !are_bytes)
+      fail(
+          "is not read before its elements are bytes; write chunks by bytes, and blosc, zstd or gzip behind "
+          "it");
     if (codec.name == "transpose") {
       encoding.order = transposed(encoding.order, codec.configuration.at("order"), path);
     } else if (codec.name == "bytes") {
@@ -182,8 +192,8 @@ void check_names(const json& metadata, const std::string& path) {
 
 ZarrArray array_of_version_3(const json& metadata, const std::string& path) {
   if (metadata.at("zarr_format") != 3)
-    fail_zarr(path,
-              fmt::format("it is of version {}; versions 2 and 3 are read", metadata.at("zarr_format").dump()));
+    fail_zarr(path, fmt::format("it is of version {}; versions 2 and 3 are read",
+                                zarr_text(metadata.at("zarr_format"))));
   if (metadata.at("node_type") != "array") fail_zarr(path, "it is no array; give one of those in it");
   check_names(metadata, path);
   ZarrArray array;

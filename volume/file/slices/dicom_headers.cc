@@ -15,8 +15,11 @@
 namespace understudy::volume {
 
 bool DicomHeaders::Version::operator==(const Version& other) const {
+  const auto same = [](const timespec& a, const timespec& b) {
+    return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec;
+  };
   return device == other.device && number == other.number && bytes == other.bytes &&
-         written.tv_sec == other.written.tv_sec && written.tv_nsec == other.written.tv_nsec;
+         same(written, other.written) && same(changed, other.changed);
 }
 
 DicomHeaders::Version DicomHeaders::version_of(const std::string& path, const ReadableFiles& files) {
@@ -26,7 +29,7 @@ DicomHeaders::Version DicomHeaders::version_of(const std::string& path, const Re
   const int error = errno;
   ::close(file);
   if (failed != 0) throw FileError(fmt::format("{}: cannot be looked at: {}", path, std::strerror(error)));
-  return {about.st_dev, about.st_ino, about.st_size, about.st_mtim};
+  return {about.st_dev, about.st_ino, about.st_size, about.st_mtim, about.st_ctim};
 }
 
 std::vector<std::shared_ptr<const DicomHeader>> DicomHeaders::of(std::span<const std::string> paths,

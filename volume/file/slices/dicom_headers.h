@@ -30,6 +30,7 @@ class DicomHeaders {
     ino_t number = 0;
     off_t bytes = 0;
     timespec written{};
+    timespec changed{};  ///< written to, renamed or given another time
 
     bool operator==(const Version& other) const;
   };

@@ -60,7 +60,8 @@ MAX_EXCESS, MAX_COMMON = 3.0, 8.0
 FRAMES_HANDED_BACK, HANDED_BACK_MS, SHORT_FRAME_MS = 60, 5000, 500
 # A viewer that says less than this of a frame has only asked for it to be drawn later, as mayavi does.
 DRAWN_MS = 1
-# Slices that are blended into 8 bits: each blend rounds, and a hundred of them drift by some 255ths.
+# Slices that are blended into 8 bits: each blend rounds, and a hundred of them drift by some 255ths. Where it is more, every
+# frame is compared with the viewer's slices as Understudy itself does: blended in floats.
 BOUND_OF_SLICES = 4.0
 SLICES = ("pyqtgraph", "pymol", "osgvolume")
 # In these modes the viewer chooses by the clock what it shows in the middle.
@@ -243,10 +244,12 @@ def row_of(row, arguments):
                 tiles[place] = max(tile, tiles[place] or 0.0)
     if any(mode in BY_THE_CLOCK for mode in row[2].split(",")):
         tiles[1] = worst_tile_of_own_frames(row, frames, arguments)
+    drift = bool(name_of(row).split("-")[0] in SLICES and any(tile is not None and tile > BOUND_OF_SLICES for tile in tiles))
     last = pair["substituted"]
     ratio, low, high = interval(ratios)
     return {"row": row, "ratio": ratio, "low": low, "high": high, "rounds": len(ratios), "tiles": tiles,
             "simultaneous": arguments.simultaneous,
+            "in_floats": worst_tile_of_own_frames(row, frames, arguments) if drift else None,
             "bare_ms": statistics.median(bare_ms) if bare_ms else None,
             "substituted": last.draws("substituted"), "left": last.draws("left"), "reason": last.reason()}
 
@@ -304,6 +307,7 @@ def markdown(rows):
             lines.append(f"| {name} | – | – | – | – | {row['trouble']} |")
             continue
         tiles = ", ".join("–" if tile is None else f"{tile:.2g}" for tile in row["tiles"])
+        tiles += "" if row["in_floats"] is None else f" ({row['in_floats']:.2g} in floats)"
         bare = f"{row['bare_ms']:.1f}{' of a processor' if row['simultaneous'] else ''}" if row["bare_ms"] else "–"
         lines.append(f"| {name} | {row['substituted']}, {row['left']} | {bare} | {ratio_cell(row)} | {tiles} | {row['reason'] or '–'} |")
     return "\n".join(lines) + "\n"
@@ -317,7 +321,8 @@ def verdicts(rows):
         if row["ratio"] is not None and (row["ratio"] < 0.97 or (row["high"] is not None and row["high"] < 1.0)):
             yield f"slower: {' '.join(row['row'])}: {ratio_cell(row)}"
         bound = BOUND_OF_SLICES if name_of(row["row"]).split("-")[0] in SLICES else 1.0
-        if any(tile is not None and tile > bound for tile in row["tiles"]):
+        differs = any(tile is not None and tile > bound for tile in row["tiles"])
+        if differs if row["in_floats"] is None else row["in_floats"] > 1.0:
             yield f"different: {' '.join(row['row'])}: {row['tiles']}"
 
 

@@ -2,6 +2,8 @@
 #include "tests/volume/file/zarr_files.h"
 
 #include <blosc.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <lz4.h>
 #include <zstd.h>
 
@@ -72,6 +74,20 @@ Bytes chunk_of(const Bytes& scalars, const std::array<int, 3>& low, const ZarrCh
         for (int x = 0; x < chunk_size[0]; ++x) put(x, y, z);
   }
   return choice.big_endian ? swapped(chunk, scalar) : chunk;
+}
+
+void read_with_damage(const TemporaryFolder& folder, const std::string& name, const std::string& volume,
+                      int times, std::mt19937& random, Survival& survival) {
+  const Bytes good = folder.read(name);
+  for (int i = 0; i < times; ++i) {
+    folder.write(name, damaged(good, random));
+    const std::string trouble = trouble_with(folder.file(volume));
+    ++(trouble.empty() ? survival.read : survival.refused);
+    if (!trouble.empty()) {
+      EXPECT_THAT(trouble, ::testing::HasSubstr(folder.file(volume)));
+    }
+  }
+  folder.write(name, good);
 }
 
 }  // namespace understudy::volume::testing

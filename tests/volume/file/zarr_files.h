@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <random>
 #include <string>
 
 #include "tests/volume/file/volume_files.h"
@@ -25,6 +26,15 @@ Bytes packed(const Bytes& chunk, ChunkCodec codec, std::size_t scalar);
 
 void write_text(const std::filesystem::path& path, const std::string& text);
 void write_bytes(const std::filesystem::path& path, const Bytes& bytes);
+
+/// How often a volume is read, and how often refused, whose files have changed bytes.
+struct Survival {
+  int read = 0, refused = 0;
+};
+
+/// `name` in `folder` is changed `times` times, and `volume` opened, which says where it is when it is refused.
+void read_with_damage(const TemporaryFolder& folder, const std::string& name, const std::string& volume,
+                      int times, std::mt19937& random, Survival& survival);
 
 /// The chunk's scalars, those outside of the array 0, in the order that was chosen.
 Bytes chunk_of(const Bytes& scalars, const std::array<int, 3>& low, const ZarrChoice& choice);

@@ -62,8 +62,8 @@ struct RenderRequest {
   /// A ray stops once its transparency falls below this; the error is at most this times the brightest colour.
   float termination = 5e-6F;
   /// A ray ends behind the sample that makes it as opaque as this, at which the application ends its own rays;
-  /// 1: none ends so. What would follow is not shown, so parts of a ray do not add up to it: only where every
-  /// ray is cast whole. Post-classified, under `over`.
+  /// 1: none ends so. What would follow is not shown, so parts of a ray do not add up to it: below
+  /// `divisible_opacity_limit`, only where every ray is cast whole. Post-classified, under `over`.
   float opacity_limit = 1;
   std::optional<DepthImage> depth;
   /// Nodes that send each other floats may send half floats, each time rounded to 2^-11 of a value.
@@ -86,6 +86,15 @@ inline bool may_cover_whole_rays(const RenderRequest& request) {
          request.filter == Filter::linear && std::holds_alternative<TransferFunction>(request.classification) &&
          !request.fog && request.method == Method::post_classified && request.surfaces.empty() &&
          !request.light && request.opacity_limit == 1;
+}
+
+/// From this opacity limit on, rays may be cast in parts, each of which ends at the limit by itself: together
+/// they are at most 1 - limit more opaque than the whole ray.
+constexpr float divisible_opacity_limit = 0.97F;
+
+/// Whether an opacity limit keeps rays from being cast in parts.
+inline bool needs_whole_rays(const RenderRequest& request) {
+  return request.opacity_limit < divisible_opacity_limit;
 }
 
 /// Below this transparency nothing more of a ray is asked for: below `termination`, or where it has reached its

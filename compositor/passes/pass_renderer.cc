@@ -174,7 +174,7 @@ std::vector<PassRenderer::Composite> PassRenderer::composites(std::span<const Re
   whole.part.reset();
   std::vector<Composite> composites;
   for (const RenderRequest& request : requests) {
-    if (request.opacity_limit < 1)
+    if (volume::needs_whole_rays(request))
       throw RequestRefused(
           "rays that end where they are opaque have to be cast whole: give more memory or nodes");
     volume::Image& image =

@@ -475,7 +475,7 @@ std::vector<Rect> RankRenderer::footprints(std::uint64_t client, const RenderReq
   const Volume& volume = find_complete(client, request);
   return refusing([&] {
     validate(volume.bricks.description(), request);
-    if (request.opacity_limit < 1 && volume.arrangement.members() > 1)
+    if (volume::needs_whole_rays(request) && volume.arrangement.members() > 1)
       throw RequestRefused(
           fmt::format("rays that end where they are opaque to {} have to be cast whole: let ranks divide the "
                       "image alone (--sort first)",

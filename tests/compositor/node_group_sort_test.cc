@@ -210,6 +210,19 @@ TEST_F(NodeGroupSort, RaysThatEndAtAnOpacityAreCastWhole) {
   }
 }
 
+TEST_F(NodeGroupSort, RaysThatEndNearlyOpaqueMayBeCastInParts) {
+  start_sorted(4, Sort::last);
+  const auto linked = connect(), embedded = embedded_service();
+  const Texture texture = some_texture();
+  upload(*linked, texture);
+  upload(*embedded, texture);
+  volume::RenderRequest request = request_on_steps(texture);
+  request.classification = volume::testing::smooth_table(256, 0.6F);
+  request.opacity_limit = volume::divisible_opacity_limit;
+  EXPECT_LE(largest_difference(image_of(*linked, request), image_of(*embedded, request)),
+            1 - volume::divisible_opacity_limit + 1e-5);
+}
+
 TEST_F(NodeGroupSort, RefusesWhatIsRefusedAndGoesOn) {
   start_sorted(4, Sort::first);
   const auto linked = connect(), embedded = embedded_service();

@@ -51,7 +51,7 @@ std::optional<float> explained_by(const std::vector<EndedRay>& rays) {
 float opacity_limit(const March& march, const volume::RaySteps& steps, FieldProbe& probe,
                     const RaysThroughBox& rays) {
   constexpr float least_limit = 0.5F;
-  constexpr float highest_limit = 0.97F;
+  constexpr float highest_limit = 0.99F;
   constexpr float thinnest = 0.02F;  // samples whose number an opacity tells
   constexpr float densest = 0.4F;
   constexpr double rounding = 2e-4;

@@ -250,7 +250,7 @@ std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& prob
   const auto way = rays.way(middle[0], middle[1]);
   const auto translucent = std::ranges::find(values, march.translucent, &SeenValue::value);
   if (!way || translucent == values.end()) return {};
-  // Limits of opacity of 0.97 and more are not looked for.
+  // Below the limits of opacity that programs usually have.
   constexpr float below_limits = 0.96F;
   constexpr float below_nearly_opaque = 0.99F;
   auto contrast = contrast_to(translucent->ray, march, values, below_limits);

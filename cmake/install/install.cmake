@@ -105,9 +105,17 @@ if(TARGET understudy_python)
     set(python_packages ${CMAKE_INSTALL_LIBDIR}/python${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}/site-packages)
   endif()
   set(UNDERSTUDY_INSTALL_PYTHON ${python_packages} CACHE STRING "Where the Python module is installed, below the prefix")
+  set(modulefile_python "prepend-path PYTHONPATH        [file join $prefix ${UNDERSTUDY_INSTALL_PYTHON}]")
   install(TARGETS understudy_python LIBRARY DESTINATION ${UNDERSTUDY_INSTALL_PYTHON}/understudy COMPONENT python)
   install(FILES apps/python/understudy/__init__.py DESTINATION ${UNDERSTUDY_INSTALL_PYTHON}/understudy COMPONENT python)
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-understudy RENAME copyright COMPONENT python)
 endif()
+
+# For sites that offer programs by `module load`. Packages, whose prefix is the system's, leave it out.
+set(modulefiles_folder ${CMAKE_INSTALL_DATADIR}/modulefiles/understudy)
+file(RELATIVE_PATH prefix_from_modulefile /prefix/${modulefiles_folder} /prefix)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/modulefile.in ${CMAKE_CURRENT_BINARY_DIR}/modulefile @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/modulefile DESTINATION ${modulefiles_folder} RENAME ${PROJECT_VERSION}
+  COMPONENT modulefile)
 
 include(${CMAKE_CURRENT_LIST_DIR}/packages.cmake)

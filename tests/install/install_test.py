@@ -16,6 +16,8 @@ ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(sys.argv.pop(1)).resolve()
 ENVIRONMENT = {"PATH": "/usr/bin:/bin", "HOME": "/nonexistent", "OMPI_ALLOW_RUN_AS_ROOT": "1",
                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "UNDERSTUDY_SPEED_GUARD": "off"}
+# Environment Modules of Debian and of Fedora, and Lmod.
+MODULES = ("/usr/share/modules/init/bash", "/usr/share/Modules/init/bash", "/usr/share/lmod/lmod/init/bash")
 # With what divides the loader's lists.
 AWKWARD = "a prefix:with both"
 
@@ -68,6 +70,21 @@ class Installed(unittest.TestCase):
         if not (self.prefix / "bin" / "understudy-node").exists():
             self.skipTest("built without MPI")
         self.assertIn("3 substituted (2 nodes)", self.run_viewer("-n", "2"))
+
+    def test_module_is_loaded_and_unloaded(self):
+        start = next((path for path in MODULES if os.path.exists(path)), None)
+        if start is None:
+            self.skipTest("neither Environment Modules nor Lmod is installed")
+        first, place = self.folder / "first module", self.folder / "moved module"
+        install(first, "runtime", "modulefile")
+        first.rename(place)
+        script = ('source "$1"; module use "$2/share/modulefiles"; module load understudy; understudy --version; '
+                  'echo "man $MANPATH"; module unload understudy; command -v understudy || echo gone')
+        said = output_of("bash", "-c", script, "bash", start, place)
+        self.assertRegex(said, r"(?m)^understudy \d")
+        # Ends with nothing, which stands for the system's pages.
+        self.assertIn(f"man {place}/share/man:\n", said)
+        self.assertTrue(said.endswith("gone\n"), said)
 
     def test_no_installed_file_names_the_build(self):
         for place in (self.prefix, self.development):

@@ -2,16 +2,15 @@
 #include "apps/understudy/cli/convert.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <string>
 
 #include "apps/understudy/cli/output_file.h"
 #include "apps/understudy/file_scene/file_hints.h"
+#include "apps/understudy/progress/progress_option.h"
 #include "volume/file/volume_file.h"
 #include "volume/opening/open_volume.h"
 
@@ -25,25 +24,7 @@ struct Arguments {
   int time_step = 0;
   volume::HierarchyOptions options;
   std::string prediction = "cubic";
-};
-
-/// On standard error: a line that is drawn over itself on a terminal, and one line for every fifth elsewhere.
-class Progress {
- public:
-  void show(double part) {
-    const int percent = int(100 * part);
-    if (terminal_) {
-      fmt::print(stderr, "\runderstudy: converting {:3} %{}", percent, percent == 100 ? "\n" : "");
-      return;
-    }
-    if (percent < next_) return;
-    fmt::print(stderr, "understudy: converting {:3} %\n", percent);
-    next_ = percent / 20 * 20 + 20;
-  }
-
- private:
-  bool terminal_ = isatty(STDERR_FILENO) == 1;
-  int next_ = 20;
+  ProgressOptions progress;
 };
 
 int convert(const Arguments& arguments) {
@@ -53,9 +34,13 @@ int convert(const Arguments& arguments) {
   const auto volume = volume::open_volume(arguments.volume, hints);
   volume::HierarchyOptions options = arguments.options;
   options.prediction = arguments.prediction == "cubic" ? volume::Prediction::cubic : volume::Prediction::linear;
-  Progress progress;
-  const volume::HierarchyFigures figures =
-      volume::write_hierarchical(*volume, arguments.out, options, [&](double part) { progress.show(part); });
+  const volume::HierarchyFigures figures = [&] {
+    Progress progress(arguments.progress.style());
+    return volume::write_hierarchical(*volume, arguments.out, options, [&](double part) {
+      progress.show(part, fmt::format("converting {:3} %", int(100 * part)));
+    });
+  }();
+  if (arguments.progress.quiet) return 0;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   fmt::print("{}: {}{:.2f} s, {:.0f} MB/s\n", arguments.out, figures_text(figures), seconds,
              double(figures.scalar_bytes) / 1e6 / seconds);
@@ -111,6 +96,7 @@ void add_convert(CLI::App& app, std::function<int()>& chosen) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   add_file_hints(*subcommand, arguments->raw);
+  add_progress_options(*subcommand, arguments->progress);
   subcommand->callback([arguments, &chosen] { chosen = [arguments] { return convert(*arguments); }; });
 }
 

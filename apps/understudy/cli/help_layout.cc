@@ -29,7 +29,7 @@ const Heading headings[] = {
     {"The viewer",
      {"injection", "remote", "server-opengl", "sandbox", "chain", "frame-latency", "require", "trace"}},
     {"Checks and figures",
-     {"verify", "speed-guard", "disable-optimization", "debug-tint", "explain", "report", "progress",
+     {"verify", "speed-guard", "disable-optimization", "debug-tint", "explain", "report", "progress", "quiet",
       "print-times"}},
 };
 

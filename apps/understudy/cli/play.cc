@@ -2,7 +2,6 @@
 #include "apps/understudy/cli/play.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -12,6 +11,7 @@
 
 #include "apps/understudy/images/read_image.h"
 #include "apps/understudy/offscreen/offscreen_contexts.h"
+#include "apps/understudy/progress/progress_option.h"
 #include "compositor/logging/log.h"
 #include "spu/player/player.h"
 #include "spu/report/counters.h"
@@ -25,39 +25,13 @@ namespace {
 /// Different faults of a trace that are said; more are only counted.
 constexpr std::size_t most_faults_of_play = 20;
 
-/// One line that rewrites itself, where somebody may be looking at it.
-class PlayProgress {
- public:
-  explicit PlayProgress(const std::filesystem::path& trace)
-      : bytes_(std::filesystem::file_size(trace)), shown_(isatty(STDERR_FILENO) != 0) {}
-  ~PlayProgress() {
-    if (told_) fmt::print(stderr, "\r\033[K");
-  }
-  PlayProgress(const PlayProgress&) = delete;
-  PlayProgress& operator=(const PlayProgress&) = delete;
-
-  void tell(std::uint64_t offset, std::uint64_t frames) {
-    const std::uint64_t percent = bytes_ == 0 ? 100 : 100 * offset / bytes_;
-    if (!shown_ || percent == percent_) return;
-    percent_ = percent;
-    told_ = true;
-    fmt::print(stderr, "\runderstudy: {} frames, {} % of the trace\033[K", frames, percent);
-    std::fflush(stderr);
-  }
-
- private:
-  const std::uintmax_t bytes_;
-  const bool shown_;
-  bool told_ = false;
-  std::uint64_t percent_ = ~std::uint64_t(0);
-};
-
 class Playing {
  public:
   Playing(const PlayPlan& plan, const spu::Options& options)
       : plan_(plan),
         reader_(plan.trace),
-        progress_(plan.trace),
+        bytes_(std::filesystem::file_size(plan.trace)),
+        progress_(plan.progress),
         windows_(open_offscreen_contexts(options.server_opengl)),
         player_(*windows_, options) {
     player_.on_frame = [this](const spu::ShownFrame& frame) { frame_shown(frame); };
@@ -69,7 +43,9 @@ class Playing {
     while (frame_ <= plan_.frames.last) {
       const std::optional<spu::Block> block = reader_.next();
       if (!block) break;
-      progress_.tell(block->file_offset, played_.frames);
+      const double done = bytes_ == 0 ? 1 : double(block->file_offset) / double(bytes_);
+      progress_.show(done, fmt::format("{} {}, {} % of the trace", played_.frames,
+                                       played_.frames == 1 ? "frame" : "frames", int(100 * done)));
       play(*block);
     }
     if (reader_.cut_off())
@@ -130,7 +106,8 @@ class Playing {
 
   const PlayPlan plan_;
   spu::TraceReader reader_;
-  PlayProgress progress_;
+  const std::uintmax_t bytes_;  ///< of the trace
+  Progress progress_;
   const std::unique_ptr<OffscreenContexts> windows_;
   spu::Player player_;
   Played played_;
@@ -181,7 +158,10 @@ void add_play(CLI::App& app, std::function<int()>& chosen) {
   subcommand->add_option("trace", plan->trace)->required();
   subcommand->add_option("--frames", *frames);
   subcommand->add_option("--save-frames", plan->save_frames);
-  subcommand->callback([plan, frames, &chosen] {
+  const auto progress = std::make_shared<ProgressOptions>();
+  add_progress_options(*subcommand, *progress);
+  subcommand->callback([plan, frames, progress, &chosen] {
+    plan->progress = progress->style();
     if (!frames->empty()) plan->frames = parse_frame_range(*frames);
     chosen = [plan] { return play_and_say(*plan); };
   });

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "apps/understudy/gl_server/guarded_player.h"
+#include "apps/understudy/progress/progress.h"
 #include "spu/options.h"
 
 namespace understudy::launcher {
@@ -30,6 +31,7 @@ struct PlayPlan {
   FrameRange frames;                  ///< the ones that are saved and counted; playing ends behind them
   std::filesystem::path save_frames;  ///< a folder for images; empty: none are saved
   PlayedRecord* played = nullptr;     ///< told of every record, where somebody looks after the player
+  ProgressStyle progress = ProgressStyle::silent;
 };
 
 struct Played {

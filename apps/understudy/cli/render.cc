@@ -2,7 +2,6 @@
 #include "apps/understudy/cli/render.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -21,6 +20,7 @@
 #include "apps/understudy/file_scene/file_scene.h"
 #include "apps/understudy/file_scene/load_progress.h"
 #include "apps/understudy/images/image.h"
+#include "apps/understudy/progress/progress_option.h"
 #include "apps/understudy/study/median.h"
 #include "compositor/logging/log.h"
 #include "compositor/passes/pass_plan.h"
@@ -47,7 +47,7 @@ struct RenderArguments {
   std::string save_float;
   std::string memory = "auto";
   BudgetArguments budget;
-  bool progress = false;
+  ProgressOptions progress;
 };
 
 double milliseconds_since(Clock::time_point start) {
@@ -117,13 +117,11 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
   const Passes passes = passes_of(*file, scene, arguments, std::max(1, service.nodes()));
   figures.open_ms = milliseconds_since(start);
   start = Clock::now();
-  using Style = LoadProgress::Style;
-  LoadProgress progress(arguments.progress             ? Style::lines
-                        : ::isatty(STDERR_FILENO) != 0 ? Style::bar
-                                                       : Style::silent);
-  compositor::PassRenderer renderer(
-      service, *file, passes.load, passes.parts,
-      [&](int part, int of, std::span<const compositor::RankLoad> ranks) { progress.show(part, of, ranks); });
+  Progress progress(arguments.progress.style());
+  compositor::PassRenderer renderer(service, *file, passes.load, passes.parts,
+                                    [&](int part, int of, std::span<const compositor::RankLoad> ranks) {
+                                      show_load(progress, part, of, ranks);
+                                    });
   renderer.load(unclassified_request(scene, scene.image));
   figures.ranks = renderer.ranks();
   figures.load_ms = milliseconds_since(start);
@@ -170,8 +168,9 @@ int render(RenderArguments arguments) {
         fmt::format("no image was made: render again, or in this process, without nodes ({})", lost.what()));
   }
   figures.backends = backends;
-  for (const std::string& choice : backends) logging::log(logging::Level::info, "{}", choice);
   if (!arguments.report.empty()) write_render_report(arguments.report, figures);
+  if (arguments.progress.quiet) return 0;
+  for (const std::string& choice : backends) logging::log(logging::Level::info, "{}", choice);
   std::fputs(summary_text(figures).c_str(), stdout);
   return 0;
 }
@@ -213,8 +212,7 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
   render_command->add_option("--frames", arguments->frames, "render as often, for the time")
       ->check(CLI::Range(1, max_frames))
       ->capture_default_str();
-  render_command->add_flag("--progress", arguments->progress,
-                           "loading as lines, with the bytes read by each rank");
+  add_progress_options(*render_command, arguments->progress, ", with the bytes read by each rank");
   render_command->callback([arguments, &chosen] { chosen = [arguments] { return render(*arguments); }; });
 }
 

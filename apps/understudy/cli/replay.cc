@@ -16,6 +16,7 @@
 #include "apps/understudy/cli/sort_option.h"
 #include "apps/understudy/launch/backend_option.h"
 #include "apps/understudy/processes/installation.h"
+#include "apps/understudy/progress/progress_option.h"
 #include "spu/registry/assemble.h"
 
 namespace understudy::launcher {
@@ -27,6 +28,7 @@ struct ReplayArguments {
   std::filesystem::path save_frames;
   bool native = false;
   std::string chain;
+  ProgressOptions progress;
 };
 
 /// The player is a process of its own, as a viewer is: nodes are looked after while it plays, and whatever a
@@ -39,6 +41,11 @@ int replay(const ReplayArguments& replay, RunArguments arguments) {
   std::vector<std::string> command = {this_installation().programs / "understudy", "play", replay.trace};
   if (!replay.frames.empty()) command.insert(command.end(), {"--frames", replay.frames});
   if (!replay.save_frames.empty()) command.insert(command.end(), {"--save-frames", replay.save_frames});
+  if (replay.progress.lines) command.emplace_back("--progress");
+  if (replay.progress.quiet) {
+    command.emplace_back("--quiet");
+    say_less(arguments);
+  }
   return run(arguments, command);
 }
 
@@ -64,6 +71,7 @@ void add_replay(CLI::App& app, std::function<int()>& chosen) {
   subcommand->add_option("--chain", own->chain, "the units to play on [UNDERSTUDY_CHAIN]")
       ->type_name("UNITS")
       ->excludes(native);
+  add_progress_options(*subcommand, own->progress);
   add_options_of_the_table(*subcommand, arguments, without);
   add_backend_option(*subcommand, arguments->backend);
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);

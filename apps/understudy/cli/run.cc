@@ -29,8 +29,9 @@ int run_viewer(RunArguments arguments, const std::vector<std::string>& command) 
     return usage_error;
   }
   if (!arguments.trace.empty()) prepare_trace(arguments);
+  if (arguments.quiet) say_less(arguments);
   const int status = run(arguments, command);
-  if (!arguments.trace.empty()) say(trace_summary(arguments.trace));
+  if (!arguments.trace.empty() && !arguments.quiet) say(trace_summary(arguments.trace));
   return status;
 }
 
@@ -66,6 +67,11 @@ void add_options_of_the_table(CLI::App& subcommand, const std::shared_ptr<RunArg
       if (flag == "--report") taken->check(can_be_written());
     }
   }
+}
+
+void say_less(RunArguments& arguments) {
+  arguments.quiet = true;
+  arguments.settings["UNDERSTUDY_LOG"] = "warn";
 }
 
 CommandLine split_at_double_dash(int argc, char** argv) {
@@ -110,6 +116,7 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
   subcommand->add_flag("--require", arguments->required,
                        "exit with status 3 when no frame was substituted, with 4 when the GL server of "
                        "--remote was lost, unless the viewer's own status tells of a failure");
+  subcommand->add_flag("--quiet", arguments->quiet, "say nothing but warnings and errors");
   subcommand->callback([arguments, &viewer, &chosen] {
     chosen = [arguments, &viewer] { return run_viewer(*arguments, viewer); };
   });

@@ -26,6 +26,9 @@ CommandLine split_at_double_dash(int argc, char** argv);
 void add_options_of_the_table(CLI::App& subcommand, const std::shared_ptr<RunArguments>& arguments,
                               std::span<const std::string_view> without = {});
 
+/// Of this run, only warnings and errors are said.
+void say_less(RunArguments& arguments);
+
 /// Adds the subcommand; when it is parsed, `chosen` runs it.
 void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::function<int()>& chosen);
 

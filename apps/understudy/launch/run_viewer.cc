@@ -218,7 +218,8 @@ std::string with_the_launchers(const std::string& report, const std::vector<std:
   return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-void tell_what_happened(const spu::Options& options, const RunFolder& folder, const RunFigures& figures) {
+void tell_what_happened(const spu::Options& options, bool quiet, const RunFolder& folder,
+                        const RunFigures& figures) {
   const nlohmann::ordered_json connection = connection_figures(folder.path());
   const spu::Processes processes = figures.processes();
   const std::vector<std::string> backends = backend_choices(folder.path());
@@ -227,7 +228,7 @@ void tell_what_happened(const spu::Options& options, const RunFolder& folder, co
     for (const std::string& choice : backends) say(choice);
     if (!connection.is_null()) say(connection_text(connection));
   }
-  std::fprintf(stderr, "%s\n", figures.summary().c_str());
+  if (!quiet) std::fprintf(stderr, "%s\n", figures.summary().c_str());
   if (options.report.empty()) return;
   try {
     spu::replace_file(options.report, with_the_launchers(spu::report_json(processes), backends, connection));
@@ -441,7 +442,7 @@ int run_planned(const RunArguments& arguments, const std::vector<std::string>& c
   nodes.reset();
   const RunFigures figures(folder.path());
   tell_of_a_missing_display(ending, figures);
-  tell_what_happened(plan.options, folder, figures);
+  tell_what_happened(plan.options, arguments.quiet, folder, figures);
   return arguments.required ? figures.required_status(ending.exit_status()) : ending.exit_status();
 }
 

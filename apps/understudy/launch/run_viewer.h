@@ -31,6 +31,7 @@ struct RunArguments {
   ConnectionPlan connection;        ///< how to get at --connect HOST:PORT
   bool remote = false;              ///< the viewer's calls are made by a GL server, not in its process
   bool required = false;            ///< a run without substituted frames is a failure
+  bool quiet = false;               ///< nothing but warnings and errors is said
 };
 
 /// Runs the program with nodes behind it when they are asked for, and tells what happened. Returns its exit

@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <string_view>
 #include <system_error>
 
@@ -19,6 +18,7 @@
 #include "apps/understudy/images/image.h"
 #include "apps/understudy/processes/child_process.h"
 #include "apps/understudy/processes/installation.h"
+#include "apps/understudy/progress/progress_option.h"
 #include "apps/understudy/study/other_programs.h"
 #include "apps/understudy/study/results.h"
 #include "volume/opening/open_volume.h"
@@ -47,42 +47,32 @@ struct StudyArguments {
   bool fresh = false;
   bool alone = false;
   int edge = 0;
+  ProgressOptions progress;
 };
 
-/// A bar on a terminal, else a line for every scene.
+/// How far all scenes are, and how long the rest takes.
 class StudyProgress {
  public:
-  explicit StudyProgress(std::size_t scenes) : scenes_(scenes), bar_(::isatty(STDERR_FILENO) != 0) {}
-  StudyProgress(const StudyProgress&) = delete;
-  StudyProgress& operator=(const StudyProgress&) = delete;
-  ~StudyProgress() {
-    if (bar_ && shown_) std::fputc('\n', stderr);
-  }
+  StudyProgress(std::size_t scenes, ProgressStyle style) : scenes_(scenes), progress_(style) {}
 
   void begin(std::size_t scene, const std::string& name) {
     scene_ = scene;
     name_ = name;
-    if (!bar_) fmt::print(stderr, "study: {} ({} of {})\n", name, scene + 1, scenes_);
   }
   /// `done`: of the scene. Any thread may call it.
   void show(double done, const std::string& what) {
-    if (!bar_) return;
-    const std::lock_guard lock(mutex_);
-    shown_ = true;
     const double all = (double(scene_) + done) / double(scenes_);
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
     const int left = all > 0.02 ? int(spent.count() * (1 - all) / all) : -1;
-    fmt::print(stderr, "\r\033[Kstudy {:3.0f} %  {}: {}{}", 100 * all, name_, what,
-               left < 0 ? "" : fmt::format("  {}:{:02} left", left / 60, left % 60));
+    progress_.show(all, fmt::format("study {:3.0f} %  {}: {}{}", 100 * all, name_, what,
+                                    left < 0 ? "" : fmt::format("  {}:{:02} left", left / 60, left % 60)));
   }
 
  private:
   std::size_t scenes_;
-  bool bar_;
-  bool shown_ = false;
+  Progress progress_;
   std::size_t scene_ = 0;
   std::string name_;
-  std::mutex mutex_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
@@ -291,26 +281,16 @@ void print_savings(const SceneResults& scene) {
   }
 }
 
-int run_study(const StudyArguments& arguments) {
-  const std::vector<SceneDescription> scenes = scenes_of(arguments);
-  // A path that is wrong is said now, not when its turn comes.
-  for (const SceneDescription& scene : scenes) volume::open_volume(scene.volume);
-  const fs::path folder = arguments.out;
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || ::access(folder.c_str(), W_OK) != 0)
-    throw std::runtime_error(
-        fmt::format("{}: no folder that can be written to; give another one with --out", folder.string()));
-  const int edge = arguments.edge > 0 ? arguments.edge : arguments.quick ? quick_edge : whole_edge;
-  const int stride = std::min(arguments.quick ? quick_stride : whole_stride, edge);
-  Results results = arguments.fresh ? Results{edge, stride, {}} : read_results(folder, edge, stride);
+/// What is not yet in `results`; the folder has all of them after each scene.
+void study_scenes(const std::vector<SceneDescription>& scenes, const StudyArguments& arguments,
+                  const fs::path& folder, Results& results) {
   std::optional<OtherPrograms> others;
   if (!arguments.alone) others.emplace(folder / "other-programs");
   // One scene of a quick study is looked into for what is left out: the first that is somebody's data.
   const auto from_file = std::ranges::find_if(
       scenes, [](const SceneDescription& scene) { return !scene.volume.starts_with("synthetic:"); });
   const std::size_t looked_into = from_file == scenes.end() ? 0 : std::size_t(from_file - scenes.begin());
-  StudyProgress progress(scenes.size());
+  StudyProgress progress(scenes.size(), arguments.progress.style());
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const SceneDescription& scene = scenes[i];
     std::erase_if(results.scenes, [&](const SceneResults& earlier) {
@@ -323,6 +303,9 @@ int run_study(const StudyArguments& arguments) {
     const bool with_savings = !arguments.alone && (i == looked_into || !arguments.quick);
     study_scene(scene, *found, results, folder, arguments, others ? &*others : nullptr, with_savings, progress);
   }
+}
+
+void print_results(const Results& results) {
   for (const SceneResults& scene : results.scenes) {
     fmt::print(
         "{}: {} rays, reference {:.1f} s ({:.0f} rays/s); a voxel's optical depth up to {:.3g}, opacity "
@@ -337,7 +320,25 @@ int run_study(const StudyArguments& arguments) {
     print_advantages(scene);
     print_savings(scene);
   }
+}
+
+int run_study(const StudyArguments& arguments) {
+  const std::vector<SceneDescription> scenes = scenes_of(arguments);
+  // A path that is wrong is said now, not when its turn comes.
+  for (const SceneDescription& scene : scenes) volume::open_volume(scene.volume);
+  const fs::path folder = arguments.out;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || ::access(folder.c_str(), W_OK) != 0)
+    throw std::runtime_error(
+        fmt::format("{}: no folder that can be written to; give another one with --out", folder.string()));
+  const int edge = arguments.edge > 0 ? arguments.edge : arguments.quick ? quick_edge : whole_edge;
+  const int stride = std::min(arguments.quick ? quick_stride : whole_stride, edge);
+  Results results = arguments.fresh ? Results{edge, stride, {}} : read_results(folder, edge, stride);
+  study_scenes(scenes, arguments, folder, results);
   const int status = write_page(folder);
+  if (arguments.progress.quiet) return status;
+  print_results(results);
   if (status == 0) fmt::print("{}\n", (folder / "index.html").string());
   return status;
 }
@@ -360,6 +361,7 @@ void add_study(CLI::App& app, std::function<int()>& chosen) {
   command->add_option("--out", arguments->out, "where study.json, study.csv, error maps and index.html go")
       ->type_name("DIR")
       ->capture_default_str();
+  add_progress_options(*command, arguments->progress);
   command->callback([arguments, &chosen] { chosen = [arguments] { return run_study(*arguments); }; });
 }
 

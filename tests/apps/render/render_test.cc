@@ -141,9 +141,9 @@ TEST_F(Render, LoadingIsShown) {
     EXPECT_GE(percent, last);
     last = percent;
   }
-  EXPECT_GE(lines, 3) << "steps of some MiB";
-  EXPECT_THAT(render("synthetic:8x8x8 --size 20x20").output, Not(HasSubstr("loading")))
-      << "no terminal, no bar";
+  EXPECT_GE(lines, 3) << "a line for every tenth, in steps of some MiB";
+  EXPECT_THAT(render("synthetic:8x8x8 --size 20x20").output, Not(HasSubstr("loading"))) << "no terminal";
+  EXPECT_EQ(render("synthetic:8x8x8 --size 20x20 --quiet").output, "");
 }
 
 TEST_F(Render, WhatIsWrongIsSaidWithTheNextStep) {

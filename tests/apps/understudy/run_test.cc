@@ -168,6 +168,10 @@ TEST_F(UnderstudyRun, NodesAreWantedByNumberOrByHosts) {
   EXPECT_THAT(result.output, HasSubstr("Give -n N, or --hostfile FILE"));
 }
 
+TEST_F(UnderstudyRun, SaysNothingWhereItIsToBeQuiet) {
+  EXPECT_EQ(understudy("run --quiet -- true").output, "");
+}
+
 TEST_F(UnderstudyRun, ReturnsTheViewersOwnExitStatusAndLeavesNothing) {
   for (const int status : {0, 7, 255}) {
     const Result result = understudy("run -- sh -c 'exit " + std::to_string(status) + "'");

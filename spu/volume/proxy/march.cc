@@ -266,7 +266,7 @@ std::optional<Refusal> MarchMeasurement::measure_samples() {
   if (auto refusal = measure_table(measured_, probe_, rays_, rules_.front(), march_)) return refusal;
   if (!fill_unseen(probe_, box_, rules_.front(), march_))
     return "a value that may hide what lies behind it has the colour of the shader's background";
-  march_.opacity_limit = opacity_limit(march_, rules_.front(), probe_, rays_);
+  take_opacity_limit(measured_, rules_.front(), probe_, rays_, march_);
   if (auto refusal = take_offsets()) return refusal;
   if (auto refusal = find_places()) return refusal;
   find_first_samples();

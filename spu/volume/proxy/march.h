@@ -69,6 +69,8 @@ struct March {
   bool alpha_twice = false;
   /// Of samples that are composed by over: as of RenderRequest (opacity_limit.h).
   float opacity_limit = 1;
+  /// Likewise: the program shows rays that end at the limit as opaque.
+  bool opaque_at_limit = false;
   std::optional<Jitter> jitter;  ///< where `steps.offsets` come from
   /// Premultiplied; of one sample. Where there is light, in an even field, or, if `light->even` is 0, on slopes
   /// that face the eye.

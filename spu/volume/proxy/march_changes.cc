@@ -70,7 +70,7 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
     if (measure_table(measured, probe, rays, march.steps, changed)) return std::nullopt;
     if (is_black_where_even(march) && !take_facing_colours(measured, probe, box, changed)) return std::nullopt;
     if (!fill_unseen(probe, box, march.steps, changed)) return std::nullopt;
-    changed.opacity_limit = opacity_limit(changed, march.steps, probe, rays);
+    take_opacity_limit(measured, march.steps, probe, rays, changed);
   }
   if (fades_by_gradient(march)) {
     auto opacity = with_new_factors(measured, march);

@@ -23,6 +23,12 @@ void multiply_by_alpha(volume::Image& image) {
   }
 }
 
+void make_opaque_from(float limit, volume::Image& image) {
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
+    if (image.rgba[i] >= limit) image.rgba[i] = 1;
+  }
+}
+
 /// The value travels in the first channel; alpha counts samples. Where the lowest one is invisible, blocks of
 /// nothing else add nothing to a maximum; to a minimum and a sum they do, and all values are `visible`.
 volume::TransferFunction ramp_over(const volume::TransferFunction& table, bool visible) {
@@ -68,12 +74,15 @@ void ask_nodes(const March& march, volume::RenderRequest& request) {
 }
 
 bool needs_finish(const March& march) {
-  return march.shows_one_colour() || march.sum || march.alpha_twice || march.background;
+  return march.shows_one_colour() || march.sum || march.alpha_twice || march.background ||
+         march.opaque_at_limit;
 }
 
 void finish_image(const March& march, volume::Image& image) {
   if (march.background) return;  // which only pixels have that the box covers
-  if (march.alpha_twice) return multiply_by_alpha(image);
+  if (march.opaque_at_limit) make_opaque_from(march.opacity_limit, image);
+  if (march.alpha_twice) multiply_by_alpha(image);
+  if (march.alpha_twice || march.opaque_at_limit) return;
   const volume::TransferFunction& table = march.table;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     Rgba colour{};

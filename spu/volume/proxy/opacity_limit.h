@@ -9,10 +9,10 @@
 
 namespace understudy::spu {
 
-/// Of a march with its table and `steps`: the opacity behind which no sample is added; 1 where there is none,
-/// none below 0.99, or samples are not composed by over. What a ray leaves out beyond that is less than
-/// `max_tile_excess`, which a comparison of images allows.
-float opacity_limit(const March& march, const volume::RaySteps& steps, FieldProbe& probe,
-                    const RaysThroughBox& rays);
+/// Gives `march`, which has its table and `steps`, the opacity behind which no sample is added: 1 where there
+/// is none, none below 0.99, or samples are not composed by over. What a ray leaves out beyond that is less
+/// than `max_tile_excess`, which a comparison of images allows.
+void take_opacity_limit(const MarchContext& measured, const volume::RaySteps& steps, FieldProbe& probe,
+                        const RaysThroughBox& rays, March& march);
 
 }  // namespace understudy::spu

@@ -96,23 +96,32 @@ bool only_nearest_shows(const MarchContext& measured, FieldProbe& probe, const R
 std::optional<TranslucentRay> translucent_ray(const MarchContext& measured, FieldProbe& probe,
                                               const RaysThroughBox& rays, const volume::RaySteps& texels,
                                               const March& march, const std::vector<float>& values) {
-  constexpr float too_far_from_half = 0.48F;
   constexpr std::size_t looked_at = 4;
+  // Of what is nearly opaque the ray may have ended early: a shorter one is better.
+  constexpr std::array from_half{0.4F, 0.48F};
   const auto middle = rays.middle();
   const auto way = rays.way(middle[0], middle[1]);
   const Ray longest{middle[0], middle[1], way ? steps_of_way(texels, *way) : 0};
+  std::vector<Ray> of_parts;
+  std::vector<std::vector<Rgba>> fragments;
   for (const double part : {1.0, 0.25, 0.0625}) {
     const Ray ray = part == 1 ? longest : ray_of_length(rays, texels, part * longest.length);
-    const auto fragments = probe.at(ray.x, ray.y, values);
-    std::vector<std::pair<float, float>> by_distance;  // from half, and the value
-    for (std::size_t i = 0; i < fragments.size(); ++i) {
-      const float distance = std::abs(amount(march, fragments[i]) - 0.5F);
-      if (reached(fragments[i]) && distance < too_far_from_half) by_distance.emplace_back(distance, values[i]);
-    }
-    std::ranges::sort(by_distance);
-    by_distance.resize(std::min(by_distance.size(), looked_at));
-    for (const auto& [distance, value] : by_distance) {
-      if (!is_at_step(measured, probe, ray, value)) return TranslucentRay{ray, value};
+    of_parts.push_back(ray);
+    fragments.push_back(probe.at(ray.x, ray.y, values));
+  }
+  for (const float too_far_from_half : from_half) {
+    for (std::size_t part = 0; part < of_parts.size(); ++part) {
+      std::vector<std::pair<float, float>> by_distance;  // from half, and the value
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const float distance = std::abs(amount(march, fragments[part][i]) - 0.5F);
+        if (reached(fragments[part][i]) && distance < too_far_from_half)
+          by_distance.emplace_back(distance, values[i]);
+      }
+      std::ranges::sort(by_distance);
+      by_distance.resize(std::min(by_distance.size(), looked_at));
+      for (const auto& [distance, value] : by_distance) {
+        if (!is_at_step(measured, probe, of_parts[part], value)) return TranslucentRay{of_parts[part], value};
+      }
     }
   }
   return std::nullopt;

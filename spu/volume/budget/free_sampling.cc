@@ -28,7 +28,8 @@ std::optional<std::string> obstacle(const RenderRequest& request) {
   if (request.op != volume::Operator::over) return "samples are not composed by over";
   if (request.filter != volume::Filter::linear) return "the filter is nearest, which has no samples in between";
   if (request.fog) return "samples fade in fog";
-  if (request.opacity_limit < 1) return "rays end at an opacity that depends on the viewer's own samples";
+  if (volume::needs_whole_rays(request))
+    return "rays end at an opacity that depends on the viewer's own samples";
   return std::nullopt;
 }
 
@@ -76,6 +77,7 @@ std::variant<Meaning, std::string> meaning_of(const RenderRequest& request, cons
   if (auto reason = obstacle(request)) return *std::move(reason);
   Meaning meaning{request};
   RenderRequest& meant = meaning.request;
+  meant.opacity_limit = 1;  // the integral has none, and hardly anything is behind one that is left
   meant.classification = believable(std::get<TransferFunction>(request.classification));
   const auto way = middle_ray(request);
   if (!way) return "nothing of it is in the image";

@@ -410,6 +410,12 @@ std::vector<LitRay> lit_rays(SlopeProbe& slopes, std::vector<LitRay> rays) {
   return seen;
 }
 
+/// The same of long rays, or, where all values are dense, of brief ones.
+std::vector<LitRay> lit_rays(SlopeProbe& slopes, const RaysThroughBox& rays, const volume::RaySteps& steps) {
+  std::vector<LitRay> seen = lit_rays(slopes, long_rays(rays, steps));
+  return seen.empty() ? lit_rays(slopes, brief_rays(rays, steps)) : seen;
+}
+
 }  // namespace
 
 std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchContext& measured,
@@ -421,14 +427,14 @@ std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchC
   light.ambient = {0, 0, 0};
   light.diffuse = light.specular = {1, 1, 1};
   SlopeProbe slopes(measured, probe, march);
-  std::vector<LitRay> seen = lit_rays(slopes, long_rays(rays, march.steps));
-  if (seen.empty()) return Refusal{"no value is translucent on a long ray: light cannot be measured"};
+  std::vector<LitRay> seen = lit_rays(slopes, rays, march.steps);
+  if (seen.empty()) return Refusal{"no value is translucent on any ray: light cannot be measured"};
   const auto is_black = [](const Rgba& colour) { return !(brightest_channel(colour) > darkest); };
   if (std::ranges::all_of(march.table.entries, is_black)) {
     light.even = {0, 0, 0};
     march.light = light;
     take_facing_colours(measured, probe, box, march);
-    seen = lit_rays(slopes, long_rays(rays, march.steps));
+    seen = lit_rays(slopes, rays, march.steps);
   }
   if (seen.empty() || std::ranges::all_of(seen.front().base, is_black))
     return Refusal{"neither even fields nor slopes have a colour under the light"};

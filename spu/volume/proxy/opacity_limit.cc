@@ -100,7 +100,7 @@ std::optional<EndedRay> EqualSamples::ended_early(const Rgba& ray, const Rgba& s
 void take_opacity_limit(const MarchContext& measured, const volume::RaySteps& steps, FieldProbe& probe,
                         const RaysThroughBox& rays, March& march) {
   constexpr float least_limit = 0.5F;
-  constexpr float highest_limit = 0.99F;
+  constexpr float highest_limit = 0.9995F;
   march.opacity_limit = 1;
   march.opaque_at_limit = false;
   if (march.shows_one_colour() || march.sum) return;

@@ -10,8 +10,8 @@
 namespace understudy::spu {
 
 /// Gives `march`, which has its table and `steps`, the opacity behind which no sample is added: 1 where there
-/// is none, none below 0.99, or samples are not composed by over. What a ray leaves out beyond that is less
-/// than `max_tile_excess`, which a comparison of images allows.
+/// is none, none below 0.9995, or samples are not composed by over. Beyond that, what a ray leaves out cannot
+/// be seen.
 void take_opacity_limit(const MarchContext& measured, const volume::RaySteps& steps, FieldProbe& probe,
                         const RaysThroughBox& rays, March& march);
 

@@ -374,6 +374,19 @@ std::vector<LitRay> long_rays(const RaysThroughBox& rays, const volume::RaySteps
   return found;
 }
 
+std::vector<LitRay> brief_rays(const RaysThroughBox& rays, const volume::RaySteps& steps) {
+  const auto middle = rays.middle();
+  const auto through_middle = rays.way(middle[0], middle[1]);
+  std::vector<LitRay> found;
+  if (!through_middle) return found;
+  const double longest = steps_of_way(steps, *through_middle);
+  for (const double part : {0.25, 0.125}) {
+    const Ray brief = ray_of_length(rays, steps, part * longest);
+    if (const auto ray = ray_at(rays, brief.x, brief.y)) found.push_back(*ray);
+  }
+  return found;
+}
+
 std::vector<LitRay> near_and_far_rays(const RaysThroughBox& rays, const volume::RaySteps& steps,
                                       const volume::Matrix4& texture_to_clip) {
   constexpr double part = 0.25;

@@ -155,6 +155,10 @@ bool is_translucent(const volume::Rgba& colour);
 /// Rays that go far through the box: the longest, and others a little away from the middle of the view.
 std::vector<LitRay> long_rays(const RaysThroughBox& rays, const volume::RaySteps& steps);
 
+/// Rays that are a quarter and an eighth as long as the one through the middle of the view: where all values
+/// are dense, these let light through.
+std::vector<LitRay> brief_rays(const RaysThroughBox& rays, const volume::RaySteps& steps);
+
 /// Of the rays a quarter as long as the one through the middle of the view, that which is nearest to the eye
 /// and that which is farthest from it. A long ray shows mostly what is near.
 std::vector<LitRay> near_and_far_rays(const RaysThroughBox& rays, const volume::RaySteps& steps,

@@ -65,7 +65,7 @@ AlongRay along_ray(const Ray& ray, const Place& from, const Place& to, double le
     const double jump = speed * double(near.bend[axis]);
     // Faces of cells between the two places, or so close that rounding may pass them.
     constexpr double rounding = 1e-3;
-    const auto [low, high] = std::minmax(double(from[axis]), double(to[axis]));
+    const auto [low, high] = std::minmax({double(from[axis]), double(to[axis])});
     const auto first = int(std::ceil(low - rounding)), last = int(std::floor(high + rounding));
     for (int face = first; face <= last; ++face) {
       const double share = high > low ? (face - low) / (high - low) : 0.5;

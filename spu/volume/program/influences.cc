@@ -130,6 +130,7 @@ std::vector<UniformUse> uniform_uses(const StageFacts& fragment, std::span<const
     use.depth |= influence.target == Target::depth || influence.target == Target::coverage;
     use.discard |= influence.target == Target::discard;
     use.coordinate |= influence.target == Target::coordinate;
+    use.chooses_colour |= influence.target == Target::colour && influence.flow == Flow::branch;
     use.branch |= influence.flow == Flow::branch;
     use.loop_end |= influence.flow == Flow::loop;
   }

@@ -44,8 +44,9 @@ struct UniformUse {
   bool depth = false;
   bool discard = false;
   bool coordinate = false;
-  bool branch = false;    ///< among the flows above
-  bool loop_end = false;  ///< likewise
+  bool chooses_colour = false;  ///< by a branch: a plane beyond which samples are left out, a side that is lit
+  bool branch = false;          ///< among the flows above
+  bool loop_end = false;        ///< likewise
 };
 
 std::vector<UniformUse> uniform_uses(const StageFacts& fragment, std::span<const Influence> influences);

@@ -215,6 +215,14 @@ std::optional<program::NeighbourDistance> neighbours_of_gradients(const ProgramF
   return neighbour_distance(facts, fetches);
 }
 
+bool samples_move_samples(const ProgramFindings& findings) {
+  return std::ranges::any_of(findings.ray->coordinates, [&](const Influence& influence) {
+    const Source& source = findings.facts.sources[influence.source];
+    return influence.flow != program::Flow::loop && source.kind == SourceKind::texel &&
+           contains(findings.roles.volume, source.name);
+  });
+}
+
 VerificationSchedule::Inputs uniform_inputs(const ProgramFindings& findings,
                                             std::span<const UniformValue> values) {
   const auto only_colours = [&](const UniformValue& value) {

@@ -83,6 +83,10 @@ std::optional<Refusal> refusal_of_ray_caster(const ProgramFindings& findings);
 /// differences, which light and gradient opacity need. Null: they are not.
 std::optional<program::NeighbourDistance> neighbours_of_gradients(const ProgramFindings& findings);
 
+/// Whether where a ray caster takes a sample depends on texels that it met before, as where it takes longer
+/// steps through what is transparent: other tables may then move samples.
+bool samples_move_samples(const ProgramFindings& findings);
+
 /// Uniforms of slices as inputs of a comparison: what a change of those does that decide about fragments or
 /// move samples is unknown.
 VerificationSchedule::Inputs uniform_inputs(const ProgramFindings& findings,

@@ -35,7 +35,9 @@ std::vector<bool> CameraFollowers::look(const MarchInputs& before, const MarchIn
     if (returns) vector.returned = std::min(vector.returned + 1, most_returns);
     if (!same && (vector.stayed == most_stayed || (returns && vector.returned < most_returns)))
       vector.until_trusted = changes_until_trusted + 1;
-    if (!same && vector.until_trusted > 0) --vector.until_trusted;
+    // What shows nothing yet, as a plane before the volume, would be trusted when it does.
+    const bool chooses = k < now.varying_chooses.size() && now.varying_chooses[k];
+    if (!same && vector.until_trusted > 0 && !chooses) --vector.until_trusted;
     std::fill(follow.begin() + std::ptrdiff_t(begins[k]), follow.begin() + std::ptrdiff_t(end),
               same || vector.until_trusted == 0);
     vector.stayed = same ? std::min(vector.stayed + 1, most_stayed) : 0;

@@ -2,7 +2,7 @@
 // Which vectors and matrices of a ray caster's program move with the camera. One that stayed while the camera
 // moved, and then changes, is something else: a light, a colour, a corner that is cut off. So is one that comes
 // back to what it was while the camera moves on, until that has been right a few times (one for each eye of a
-// stereo pair).
+// stereo pair). One that decides, by a branch, which samples are left out is not trusted again.
 #pragma once
 
 #include <cstdint>

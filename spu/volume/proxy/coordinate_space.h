@@ -10,6 +10,7 @@
 #include "spu/volume/geometry/capture.h"
 #include "spu/volume/pipeline/program_stages.h"
 #include "spu/volume/program/ray_caster.h"
+#include "spu/volume/proxy/ambiguous_steps.h"
 #include "spu/volume/proxy/box.h"
 #include "spu/volume/proxy/probe_surfaces.h"
 #include "spu/volume/texture/texels.h"
@@ -53,6 +54,7 @@ struct MarchContext {
   /// As of program::RayFinding: names of samplers.
   std::span<const std::string> tables_of_one_texel{};
   std::span<const std::string> tables_of_gradients{};
+  std::span<const MeasuredWay> ways{};  ///< of earlier views under the same steps
   const Capture* seen = nullptr;  ///< of this run; where it tells what is asked, the run is not drawn once more
 };
 

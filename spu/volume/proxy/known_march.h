@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "spu/volume/proxy/ambiguous_steps.h"
 #include "spu/volume/proxy/camera_followers.h"
 #include "spu/volume/proxy/kept_window.h"
 #include "spu/volume/proxy/march.h"
@@ -28,6 +29,7 @@ struct KnownMarch {
   /// The last few. The march is derived from the last one, by a factor of its steps, or equals it. (From march
   /// to march, opacities that long steps make nearly 1 would be lost.)
   std::vector<MeasuredMarch> measured;
+  std::vector<MeasuredWay> ways;  ///< of views that left open what its steps are, under the same steps
   CameraFollowers followers;
   volume::Matrix4 camera{};          ///< of its last image, from texture to clip coordinates
   volume::Matrix4 earlier_camera{};  ///< of the one before

@@ -111,6 +111,7 @@ class MarchMeasurement {
   bool lit_ = false;                   ///< whether slopes have another colour than even fields
   std::vector<volume::Light> lights_;  ///< any of which may be the program's
   std::vector<volume::RaySteps> rules_;
+  std::vector<std::array<double, 9>> metrics_;  ///< by which rays were counted alike
   std::size_t extremes_seen_ =
       0;  ///< so many first ones of `rules_` were seen of an extreme, in the first space
   std::vector<SplitRays> split_;
@@ -202,7 +203,7 @@ std::optional<Refusal> MarchMeasurement::find_steps() {
   if (const auto* reason = std::get_if<std::string>(&counted)) return Refusal{*reason};
   const auto& all = std::get<std::vector<CountedRay>>(counted);
   const auto spaces = step_spaces(size, box_.camera.texture_to_clip, probe_);
-  auto fits = fit_steps(all, spaces);
+  auto fits = that_count_as_measured(fit_steps(all, spaces), measured_.ways);
   if (fits.empty()) return "too few rays of several samples are in view to tell the step";
   if (fits.front().unexplained > most_unexplained) {
     auto finding = find_jitter(measured_.context, measured_.run, probe_, count, all, spaces);
@@ -211,6 +212,7 @@ std::optional<Refusal> MarchMeasurement::find_steps() {
     fits = std::move(finding->fits);
   }
   take_rules(fits);
+  for (const StepFit& fit : fits) metrics_.push_back(fit.metric);
   return std::nullopt;
 }
 
@@ -361,6 +363,10 @@ void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::B
   March march = march_;
   march.space = space;
   march.steps = rule;
+  march.alike_metrics = {rule.metric};
+  for (const auto& metric : metrics_) {
+    if (!alike(metric, rule.metric)) march.alike_metrics.push_back(metric);
+  }
   march.steps.at_least_one = rule.at_least_one && may_count_ahead(rule, region);
   march.steps_seen = seen;
   // The step that reaches the opaque geometry is usually taken before it is noticed.

@@ -58,6 +58,9 @@ struct March {
   bool shows_one_colour() const { return extreme || mean; }
   /// Whether fields have shown that samples lie on `steps`; those of an extreme may only be likely.
   bool steps_seen = true;
+  /// Of steps that were counted: metrics that counted alike where they were, the one of `steps` first
+  /// (ambiguous_steps.h).
+  std::vector<std::array<double, 9>> alike_metrics;
   std::optional<PlainSum> sum;
   /// Of a sum or a mean: the alpha of rays so short that no sample lies on them; null: they show nothing.
   std::optional<float> shortest_alpha;

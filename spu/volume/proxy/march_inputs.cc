@@ -84,6 +84,12 @@ bool moves_samples_only(const ProgramFindings& says, const std::string& name) {
   return moves;
 }
 
+bool chooses_colours(const ProgramFindings& says, const std::string& name) {
+  return std::ranges::any_of(says.ray->uniforms, [&](const program::UniformUse& use) {
+    return use.chooses_colour && says.facts.sources[use.source].name == name;
+  });
+}
+
 /// Whether the sampler may have a texture that the application draws into. Volumes and depth textures, instead
 /// of which probes show fields and the far plane, do not count.
 bool may_be_drawn(const MarchContext& measured, const ShareGroup& group, const std::string& sampler) {
@@ -112,6 +118,7 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
   gl.GetIntegerv(GL_FRONT_FACE, &front);
   const auto varies = [&](float value) {
     inputs.varying_begins.push_back(inputs.varying.size());
+    inputs.varying_chooses.push_back(false);
     inputs.varying.push_back(value);
   };
   varies(gl.IsEnabled(GL_CULL_FACE) ? float(culled) : 0.0F);
@@ -126,7 +133,10 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
     const std::size_t before = inputs.fixed.size();
     const std::size_t begin = inputs.varying.size();
     append_value(measured, uniform, is_scalar(uniform.type) ? inputs.fixed : inputs.varying);
-    if (inputs.varying.size() > begin) inputs.varying_begins.push_back(begin);
+    if (inputs.varying.size() > begin) {
+      inputs.varying_begins.push_back(begin);
+      inputs.varying_chooses.push_back(chooses_colours(says, uniform.name));
+    }
     const bool in_use = inputs.fixed.size() > before;
     if (in_use && uniform.type == GL_FLOAT && moves_samples_only(says, uniform.name))
       inputs.steps.push_back(before);

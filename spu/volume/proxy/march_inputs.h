@@ -23,6 +23,8 @@ struct MarchInputs {
   std::vector<float> varying;
   /// Where each vector, matrix or number of `varying` begins.
   std::vector<std::size_t> varying_begins;
+  /// Likewise: whether it decides, by a branch, what samples look like or whether they are left out.
+  std::vector<bool> varying_chooses;
   /// Depth textures and their contents, instead of which probes show the far plane: opaque geometry's may be
   /// copied in every frame.
   std::vector<float> depths;

@@ -123,6 +123,30 @@ void remember(MeasuredMarch march, std::vector<MeasuredMarch>& measured) {
   measured.push_back(std::move(march));
 }
 
+/// Through the middle of the view; none where the eye is inside.
+std::optional<volume::Vec3> middle_way(const ProxyBox& box) {
+  if (!box.cuts.empty()) return std::nullopt;
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
+  const auto middle = rays.middle();
+  return rays.way(middle[0], middle[1]);
+}
+
+/// Whether this view shows which of several steps are the march's, which an earlier one had left open.
+bool tells_steps_apart(const March& march, const ProxyBox& box) {
+  const auto way = middle_way(box);
+  return way && tells_apart(march.alike_metrics, march.steps, *way);
+}
+
+/// Where this view leaves open what the march's steps are.
+void remember_way(const March& march, const ProxyBox& box, std::vector<MeasuredWay>& ways) {
+  constexpr std::size_t most_remembered = 4;
+  if (!count_as_measured(march.steps.metric, ways)) ways.clear();
+  const auto way = middle_way(box);
+  if (!way || march.alike_metrics.size() < 2) return;
+  if (ways.size() == most_remembered) ways.erase(ways.begin());
+  ways.push_back({*way, steps_of_way(march.steps, *way)});
+}
+
 /// How little a march explains an image, smaller being better: by its worst tile, as verification judges it;
 /// where that is no more than a driver's rounding, what was seen of samples is believed before what was
 /// guessed; and then the mean tells, in which a few rays that graze the box weigh much.
@@ -224,6 +248,7 @@ struct RayCasterStage::Draw {
   bool eye_inside = false;
   bool ends_at_geometry = false;                           ///< as in MarchContext
   std::optional<program::NeighbourDistance> neighbours{};  ///< likewise
+  bool samples_move_samples = false;                       ///< as of program_check.h
   std::span<const std::string> tables_of_samples{};
   std::span<const std::string> tables_of_one_texel{};
   std::span<const std::string> tables_of_gradients{};
@@ -243,6 +268,7 @@ struct RayCasterStage::Draw {
             neighbours,
             tables_of_one_texel,
             tables_of_gradients,
+            known.march.ways,
             &*seen.capture};
   }
 };
@@ -378,7 +404,8 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
   const bool derived = again.has_value();
   // Fields of one value, by which a table is measured, do not see the step of an extreme or a mean.
   const bool step_unknown = march && march->shows_one_colour() && steps_differ(known.inputs, inputs);
-  if (march && !again && !step_unknown) again = with_new_table(draw.measured(), *march, box);
+  if (march && !again && !step_unknown && !draw.samples_move_samples)
+    again = with_new_table(draw.measured(), *march, box);
   // What counts samples does not see noise that was turned on.
   if (again && !only_tables_differ(known.inputs, inputs) &&
       !still_placed(draw.measured(), *again, box, derived ? few_places(account_.frames()) : PlacesLookedAt{}))
@@ -391,6 +418,7 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
     MarchFinding finding = measure_march(draw.measured(), draw.spaces);
     if (const auto* refusal = std::get_if<Refusal>(&finding)) throw *refusal;
     march = choose_march(draw, service, std::get<std::vector<March>>(finding));
+    remember_way(*march, box, known.ways);
     draw.known.frames = 0;  // looked at again, as a new volume is
   }
   if (!again || !derived) remember({*march, inputs, std::move(tables)}, known.measured);
@@ -412,6 +440,7 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
     if (auto refusal = refusal_of_replacing(context_, pipeline, says)) throw Refusal{std::move(*refusal)};
   }
   draw.ends_at_geometry = fetches_depth(context_, pipeline, says.facts);
+  draw.samples_move_samples = samples_move_samples(says);
   draw.tables_of_samples = says.ray->tables_of_samples;
   draw.tables_of_one_texel = says.ray->tables_of_one_texel;
   draw.neighbours = neighbours_of_gradients(says);
@@ -436,6 +465,10 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   known.march.earlier_camera = std::exchange(known.march.camera, box.camera.texture_to_clip);
   if (says.ray->discards_by_place) draw.kept = kept_window(draw, box, inputs, says);
   follow_inside(draw, box, inputs);
+  if (turned && known.march.march && tells_steps_apart(*known.march.march, box)) {
+    known.march.march.reset();
+    known.march.measured.clear();
+  }
   const std::string_view why = why_measured(draw, box, inputs, turned);
   classifier_.count_probe(why);
   if (!why.empty()) box = measure(draw, box, inputs, service);

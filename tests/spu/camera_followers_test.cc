@@ -15,6 +15,7 @@ struct Moving {
   CameraFollowers followers;
   MarchInputs before{};
   float eye = 0;
+  bool light_chooses = false;
 
   /// Whether the light counts as a follower in the next image.
   bool light_follows(float light, Camera camera = Camera::moved_on) {
@@ -22,6 +23,7 @@ struct Moving {
     MarchInputs now;
     now.varying = {eye, 1, 2, light, 5};
     now.varying_begins = {0, 3};
+    now.varying_chooses = {false, light_chooses};
     const std::vector<bool> follow = followers.look(before, now, camera);
     EXPECT_EQ(follow.size(), now.varying.size());
     EXPECT_EQ(follow[0], turned) << "the eye itself";
@@ -59,6 +61,12 @@ TEST(CameraFollowers, AreNotWhatStayedWhileTheCameraMoved) {
   EXPECT_FALSE(scene.light_follows(3));
   EXPECT_FALSE(scene.light_follows(4));
   EXPECT_TRUE(scene.light_follows(5)) << "it has moved with the camera for a while";
+}
+
+TEST(CameraFollowers, AreNeverWhatStayedAndChoosesBetweenColours) {
+  Moving scene{.light_chooses = true};
+  for (int image = 0; image < 10; ++image) EXPECT_TRUE(scene.light_follows(1)) << "nothing has changed";
+  for (int image = 0; image < 50; ++image) EXPECT_FALSE(scene.light_follows(float(2 + image))) << image;
 }
 
 TEST(CameraFollowers, AreNotWhatComesBackToWhatItWasUntilThatWasRightAFewTimes) {

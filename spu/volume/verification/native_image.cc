@@ -20,6 +20,9 @@ class ColourBlending {
     gl_.GetIntegerv(GL_BLEND_DST_ALPHA, &factors_[3]);
     gl_.GetIntegerv(GL_BLEND_EQUATION_RGB, &equations_[0]);
     gl_.GetIntegerv(GL_BLEND_EQUATION_ALPHA, &equations_[1]);
+    gl_.GetBooleanv(GL_COLOR_WRITEMASK, written_.data());
+    // Applications keep a window's alpha as it is; an image has one.
+    gl_.ColorMask(written_[0], written_[1], written_[2], GL_TRUE);
     if (blending.replaces) return;
     gl_.BlendEquation(GLenum(equations_[0]));
     if (blending.front_to_back != FrontToBack::no) {
@@ -32,6 +35,7 @@ class ColourBlending {
   ~ColourBlending() {
     gl_.BlendEquationSeparate(GLenum(equations_[0]), GLenum(equations_[1]));
     gl_.BlendFuncSeparate(GLenum(factors_[0]), GLenum(factors_[1]), GLenum(factors_[2]), GLenum(factors_[3]));
+    gl_.ColorMask(written_[0], written_[1], written_[2], written_[3]);
   }
   ColourBlending(const ColourBlending&) = delete;
   ColourBlending& operator=(const ColourBlending&) = delete;
@@ -40,6 +44,7 @@ class ColourBlending {
   const DispatchTable& gl_;
   std::array<GLint, 4> factors_{};
   std::array<GLint, 2> equations_{};
+  std::array<GLboolean, 4> written_{};
 };
 
 /// The application's scissor narrowed to `rect` while it lives.

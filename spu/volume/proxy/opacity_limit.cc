@@ -77,7 +77,7 @@ std::optional<EndedRay> EqualSamples::ended_early(const Rgba& ray, const Rgba& s
   // What is seen of a ray over a background of the program's own is less exact.
   constexpr double rounding_over_background = 2e-3;
   constexpr double opaque = 1 - 1e-4;
-  if (!reached(ray) || !(sample[3] >= thinnest && sample[3] <= densest)) return std::nullopt;
+  if (!reached(ray) || !(ray[3] > 0) || !(sample[3] >= thinnest && sample[3] <= densest)) return std::nullopt;
   EndedRay ended{.ended = double(ray[3]), .made_opaque = ray[3] >= 1};
   if (ended.made_opaque) ended.ended = opacity_by_colour(ray, sample).value_or(1);
   if (!(ended.ended < (ended.made_opaque ? opaque : 1))) return std::nullopt;

@@ -61,6 +61,8 @@ std::optional<Contrast> contrast_to(const Rgba& translucent, const March& march,
       const auto other = amount.of(seen.ray);
       if (!other || *other > 2 * *own) continue;
       if (march.background && !told_apart(*march.background, translucent, seen.ray)) continue;
+      // What looks like the background may hide what lies behind.
+      if (march.background && !(seen.ray[3] > 0) && table_at(march.table, seen.value)[3] > 0) continue;
       const double told = std::abs(*other - *own);
       if (told < least_told * *own || told <= most) continue;
       most = told;

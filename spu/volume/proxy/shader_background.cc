@@ -257,19 +257,38 @@ class HiddenBehind {
                                                   const volume::RaySteps& steps, const March& march);
 
   bool hides(FieldProbe& probe, float value) const {
-    FieldProbe::SplitField field = opaque_;
-    (forwards_ ? field.before : field.behind) = value;
-    const Rgba seen = probe.pixel(column_, row_, field);
-    return reached(seen) && seen[3] < least_;
+    const Rgba ray = seen(probe, value);
+    return reached(ray) && ray[3] < least_;
   }
+  /// Of one sample, by how much of what lies behind is seen; null where it is too little to tell.
+  std::optional<float> opacity_of_sample(FieldProbe& probe, float value) const;
 
  private:
+  Rgba seen(FieldProbe& probe, float value) const {
+    FieldProbe::SplitField field = opaque_;
+    (forwards_ ? field.before : field.behind) = value;
+    return probe.pixel(column_, row_, field);
+  }
+
   int column_ = 0;
   int row_ = 0;
   FieldProbe::SplitField opaque_;
   bool forwards_ = true;  ///< the ray goes along the axis of the field
   float least_ = 0;       ///< opacity of what lies behind
+  double in_front_ = 0;   ///< samples before the plane
+  float behind_ = 0;      ///< opacity of those behind it
 };
+
+std::optional<float> HiddenBehind::opacity_of_sample(FieldProbe& probe, float value) const {
+  constexpr double fewest = 2;
+  constexpr float least_behind = 0.5F;
+  constexpr double least_told = 0.02;
+  const Rgba ray = seen(probe, value);
+  if (!reached(ray) || in_front_ < fewest || behind_ < least_behind) return std::nullopt;
+  const double through = std::min(1.0, double(ray[3]) / double(behind_));
+  if (through < least_told) return std::nullopt;
+  return float(1 - std::pow(through, 1 / in_front_));
+}
 
 std::optional<HiddenBehind> HiddenBehind::in_middle_of(FieldProbe& probe, const ProxyBox& box,
                                                        const volume::RaySteps& steps, const March& march) {
@@ -293,6 +312,13 @@ std::optional<HiddenBehind> HiddenBehind::in_middle_of(FieldProbe& probe, const 
   ray.opaque_ = fields.front();
   ray.forwards_ = (*way)[ray.opaque_.axis] > 0;
   ray.least_ = ray_of(march, *most, samples)[3] - visible;
+  const double length = steps_of_way(steps, *way);
+  const double all = samples_of_length(steps, length);
+  const auto through = rays.through(probe.x_of(ray.column_), probe.y_of(ray.row_));
+  if (!through) return std::nullopt;
+  const double part = (ray.opaque_.plane - through->entry[ray.opaque_.axis]) / through->way[ray.opaque_.axis];
+  ray.in_front_ = std::clamp(std::floor(part * (steps.divided ? all : length) - steps.first) + 1, 0.0, all);
+  ray.behind_ = ray_of(march, *most, all - ray.in_front_)[3];
   return ray;
 }
 
@@ -342,6 +368,29 @@ bool remove_known_background(const MarchContext& measured, FieldProbe& probe, co
   return found && distance(found->colour, march.background->colour) < same;
 }
 
+namespace {
+
+/// Gives entries that look like the program's background their opacity; false where it cannot be told.
+bool measure_unseen(const HiddenBehind& hidden_behind, FieldProbe& probe, std::size_t first, std::size_t end,
+                    March& march) {
+  constexpr std::size_t most_measured = 128;  // each takes a draw
+  constexpr float none = 1e-4F;
+  if (end - first > most_measured) return false;
+  std::vector<Rgba>& entries = march.table.entries;
+  for (std::size_t entry = first; entry < end; ++entry) {
+    const float value =
+        value_at({march.table.low, march.table.high}, double(entry) / double(entries.size() - 1));
+    const auto opacity = hidden_behind.opacity_of_sample(probe, value);
+    if (!opacity) return false;
+    if (*opacity < none) continue;
+    for (std::size_t c = 0; c < 3; ++c) entries[entry][c] = *opacity * float(march.background->colour[c]);
+    entries[entry][3] = *opacity;
+  }
+  return true;
+}
+
+}  // namespace
+
 bool fill_unseen(FieldProbe& probe, const ProxyBox& box, const volume::RaySteps& steps, March& march) {
   constexpr std::size_t longest_filled = 4;  // a value of 8 bits has as many entries
   constexpr std::size_t tested_apart = longest_filled;
@@ -362,9 +411,9 @@ bool fill_unseen(FieldProbe& probe, const ProxyBox& box, const volume::RaySteps&
     if (between && count <= longest_filled) {
       if (hides(first + count / 2)) fill_between(entries, first, end);
     } else {
-      for (std::size_t entry = first; entry < end; entry += tested_apart) {
-        if (hides(entry)) return false;
-      }
+      bool hidden = false;
+      for (std::size_t entry = first; entry < end; entry += tested_apart) hidden |= hides(entry);
+      if (hidden && !measure_unseen(*hidden_behind, probe, first, end, march)) return false;
     }
     first = end;
   }

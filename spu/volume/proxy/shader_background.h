@@ -39,8 +39,8 @@ bool remove_known_background(const MarchContext& measured, FieldProbe& probe, co
 
 /// Values that have the colour of the program's background look as if they showed nothing, but may hide what
 /// lies behind them, as fields tell that are opaque behind a plane. A few entries of march.table between others
-/// that are seen are filled in; false where there are more, or where that cannot be looked at. `probe` shows
-/// rays without their background, whose samples lie on `steps`.
+/// that are seen are filled in; of more, these fields tell the opacity. False where that cannot be looked at.
+/// `probe` shows rays without their background, whose samples lie on `steps`.
 bool fill_unseen(FieldProbe& probe, const ProxyBox& box, const volume::RaySteps& steps, March& march);
 
 }  // namespace understudy::spu

@@ -17,13 +17,13 @@ void Progress::show(double done, std::string_view text) {
   if (style_ == ProgressStyle::silent) return;
   const std::lock_guard lock(mutex_);
   if (style_ == ProgressStyle::lines) {
-    if (is_due(done)) fmt::print(stderr, "understudy: {}\n", text);
+    if (is_due(done)) std::fputs(fmt::format("understudy: {}\n", text).c_str(), stderr);
     return;
   }
   if (text == shown_) return;
   shown_ = text;
   // The rest of a longer line before it is erased.
-  fmt::print(stderr, "\runderstudy: {}\033[K", text);
+  std::fputs(fmt::format("\runderstudy: {}\033[K", text).c_str(), stderr);
   std::fflush(stderr);
 }
 
@@ -38,7 +38,7 @@ bool Progress::is_due(double done) {
 }
 
 Progress::~Progress() {
-  if (!shown_.empty()) fmt::print(stderr, "\r\033[K");
+  if (!shown_.empty()) std::fputs("\r\033[K", stderr);
 }
 
 }  // namespace understudy::launcher

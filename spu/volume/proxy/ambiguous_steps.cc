@@ -17,7 +17,7 @@ double length_of(const std::array<double, 9>& metric, const volume::Vec3& way) {
 }  // namespace
 
 bool count_as_measured(const std::array<double, 9>& metric, std::span<const MeasuredWay> ways) {
-  constexpr double same = 0.125;
+  constexpr double same = 0.3;  // how well a fit tells the length of a way
   return std::ranges::all_of(ways, [&](const MeasuredWay& measured) {
     return std::abs(length_of(metric, measured.way) - measured.steps) <= same;
   });
@@ -28,6 +28,13 @@ std::vector<StepFit> that_count_as_measured(std::vector<StepFit> fits, std::span
   std::ranges::copy_if(fits, std::back_inserter(consistent),
                        [&](const StepFit& fit) { return count_as_measured(fit.metric, ways); });
   return consistent.empty() ? fits : consistent;
+}
+
+bool of_one_shape(const std::array<double, 9>& one, const std::array<double, 9>& other) {
+  std::array<double, 9> scaled = other;
+  const double factor = std::max({one[0], one[4], one[8]}) / std::max({other[0], other[4], other[8]});
+  for (double& number : scaled) number *= factor;
+  return alike(one, scaled);
 }
 
 bool tells_apart(std::span<const std::array<double, 9>> metrics, const volume::RaySteps& steps,

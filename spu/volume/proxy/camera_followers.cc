@@ -6,6 +6,13 @@
 #include <utility>
 
 namespace understudy::spu {
+namespace {
+
+bool chooses(const MarchInputs& inputs, std::size_t vector) {
+  return vector < inputs.varying_chooses.size() && inputs.varying_chooses[vector];
+}
+
+}  // namespace
 
 std::vector<bool> CameraFollowers::look(const MarchInputs& before, const MarchInputs& now, Camera camera) {
   // A camera that moves along one axis, or turns about another, leaves some of its vectors as they are for a
@@ -19,6 +26,7 @@ std::vector<bool> CameraFollowers::look(const MarchInputs& before, const MarchIn
   const std::vector<float> earlier = std::exchange(earlier_, before.varying);
   if (before.varying_begins != begins || vectors_.size() != begins.size()) {
     vectors_.assign(begins.size(), {});
+    for (std::size_t k = 0; k < begins.size(); ++k) vectors_[k].chose = chooses(now, k);
     return follow;
   }
   if (!turned) return follow;
@@ -36,8 +44,10 @@ std::vector<bool> CameraFollowers::look(const MarchInputs& before, const MarchIn
     if (!same && (vector.stayed == most_stayed || (returns && vector.returned < most_returns)))
       vector.until_trusted = changes_until_trusted + 1;
     // What shows nothing yet, as a plane before the volume, would be trusted when it does.
-    const bool chooses = k < now.varying_chooses.size() && now.varying_chooses[k];
-    if (!same && vector.until_trusted > 0 && !chooses) --vector.until_trusted;
+    const bool chooses_now = chooses(now, k);
+    // It may have moved with the camera while a flag kept it from choosing anything.
+    if (chooses_now && !std::exchange(vector.chose, chooses_now)) vector.until_trusted = changes_until_trusted;
+    if (!same && vector.until_trusted > 0 && !chooses_now) --vector.until_trusted;
     std::fill(follow.begin() + std::ptrdiff_t(begins[k]), follow.begin() + std::ptrdiff_t(end),
               same || vector.until_trusted == 0);
     vector.stayed = same ? std::min(vector.stayed + 1, most_stayed) : 0;

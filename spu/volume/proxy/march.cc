@@ -266,9 +266,9 @@ std::optional<Refusal> MarchMeasurement::measure_samples() {
   march_.table.low = measured_.range[0];
   march_.table.high = measured_.range[1];
   if (auto refusal = measure_table(measured_, probe_, rays_, rules_.front(), march_)) return refusal;
+  take_opacity_limit(measured_, rules_.front(), probe_, rays_, march_);
   if (!fill_unseen(probe_, box_, rules_.front(), march_))
     return "a value that may hide what lies behind it has the colour of the shader's background";
-  take_opacity_limit(measured_, rules_.front(), probe_, rays_, march_);
   if (auto refusal = take_offsets()) return refusal;
   if (auto refusal = find_places()) return refusal;
   find_first_samples();
@@ -365,7 +365,7 @@ void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::B
   march.steps = rule;
   march.alike_metrics = {rule.metric};
   for (const auto& metric : metrics_) {
-    if (!alike(metric, rule.metric)) march.alike_metrics.push_back(metric);
+    if (!of_one_shape(metric, rule.metric)) march.alike_metrics.push_back(metric);
   }
   march.steps.at_least_one = rule.at_least_one && may_count_ahead(rule, region);
   march.steps_seen = seen;

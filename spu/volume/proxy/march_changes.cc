@@ -69,8 +69,8 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
     }
     if (measure_table(measured, probe, rays, march.steps, changed)) return std::nullopt;
     if (is_black_where_even(march) && !take_facing_colours(measured, probe, box, changed)) return std::nullopt;
-    if (!fill_unseen(probe, box, march.steps, changed)) return std::nullopt;
     take_opacity_limit(measured, march.steps, probe, rays, changed);
+    if (!fill_unseen(probe, box, march.steps, changed)) return std::nullopt;
   }
   if (fades_by_gradient(march)) {
     auto opacity = with_new_factors(measured, march);
@@ -115,6 +115,7 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
     const volume::RaySteps rule = rules_of(fit).front();
     if (fit.unexplained > most_unexplained || rule.first != counted_from(march.steps)) continue;
     changed.steps.metric = rule.metric;
+    changed.alike_metrics.clear();
     return changed;
   }
   return "the steps of rays are others where the eye is inside";

@@ -9,9 +9,11 @@
 #include <variant>
 #include <vector>
 
+#include "spu/volume/proxy/background_removal.h"
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/ray_probes.h"
 #include "spu/volume/proxy/step_fit.h"
+#include "volume/matrix.h"
 
 namespace understudy::spu {
 
@@ -250,11 +252,25 @@ std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& p
   return std::nullopt;
 }
 
+namespace {
+
+/// Whether samples of this colour are not seen before the program's own background, however opaque they are.
+bool looks_like_background(const March& march, const Rgba& sample) {
+  constexpr double unseen = 1e-3;  // of a sample's opacity
+  if (!march.background) return false;
+  const volume::Vec3 contrast =
+      volume::subtract(colour_of(sample), volume::scale(march.background->colour, double(sample[3])));
+  return volume::length(contrast) <= unseen * double(sample[3]);
+}
+
+}  // namespace
+
 std::optional<float> half_seen_value(const March& march, const volume::Vec3& way) {
   float nearest = 0.48F;
   std::optional<float> value;
   const volume::TransferFunction& table = march.table;
   for (std::size_t i = 0; i < table.entries.size(); ++i) {
+    if (looks_like_background(march, table.entries[i])) continue;
     const float seen = amount(march, ray_of(march, table.entries[i], steps_of_way(march.steps, way)));
     if (std::abs(seen - 0.5F) >= nearest) continue;
     nearest = std::abs(seen - 0.5F);

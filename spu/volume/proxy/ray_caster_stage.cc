@@ -418,11 +418,11 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
     MarchFinding finding = measure_march(draw.measured(), draw.spaces);
     if (const auto* refusal = std::get_if<Refusal>(&finding)) throw *refusal;
     march = choose_march(draw, service, std::get<std::vector<March>>(finding));
-    remember_way(*march, box, known.ways);
     draw.known.frames = 0;  // looked at again, as a new volume is
   }
   if (!again || !derived) remember({*march, inputs, std::move(tables)}, known.measured);
   ProxyBox found = box_in(draw.measured(), march->space);
+  if (!again) remember_way(*march, found, known.ways);
   draw.cuts = read_cuts(context_, draw.run.pipeline().program, found.camera.texture_to_clip);
   return found;
 }

@@ -311,7 +311,8 @@ std::optional<HiddenBehind> HiddenBehind::in_middle_of(FieldProbe& probe, const 
   if (fields.empty()) return std::nullopt;
   ray.opaque_ = fields.front();
   ray.forwards_ = (*way)[ray.opaque_.axis] > 0;
-  ray.least_ = ray_of(march, *most, samples)[3] - visible;
+  // A ray that the program ends early is no more opaque than that.
+  ray.least_ = std::min(ray_of(march, *most, samples)[3], march.opacity_limit) - visible;
   const double length = steps_of_way(steps, *way);
   const double all = samples_of_length(steps, length);
   const auto through = rays.through(probe.x_of(ray.column_), probe.y_of(ray.row_));
@@ -374,15 +375,16 @@ namespace {
 bool measure_unseen(const HiddenBehind& hidden_behind, FieldProbe& probe, std::size_t first, std::size_t end,
                     March& march) {
   constexpr std::size_t most_measured = 128;  // each takes a draw
-  constexpr float none = 1e-4F;
   if (end - first > most_measured) return false;
+  // After early ray termination, how much is seen depends on what lies in front.
+  if (march.opacity_limit < 1) return false;
   std::vector<Rgba>& entries = march.table.entries;
   for (std::size_t entry = first; entry < end; ++entry) {
     const float value =
         value_at({march.table.low, march.table.high}, double(entry) / double(entries.size() - 1));
+    if (!hidden_behind.hides(probe, value)) continue;
     const auto opacity = hidden_behind.opacity_of_sample(probe, value);
     if (!opacity) return false;
-    if (*opacity < none) continue;
     for (std::size_t c = 0; c < 3; ++c) entries[entry][c] = *opacity * float(march.background->colour[c]);
     entries[entry][3] = *opacity;
   }

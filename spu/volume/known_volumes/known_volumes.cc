@@ -129,7 +129,7 @@ void take_comparison(const std::optional<Comparison>& comparison, KnownVolume& v
     schedule.whole_was_right(anything_visible, comparison->native_ms.value_or(0));
     return;
   }
-  Refusal refusal = refusal_of(comparison->difference);
+  Refusal refusal = refusal_of(*comparison);
   if (volume.colours.rounding.try_after_loss(volume.sent.texture)) {
     volume.refusals.pause(frame, 1);
     volume.refusals.explained_otherwise = true;

@@ -181,7 +181,7 @@ volume::FrameCounts RunMerger::show_whole(MergedVolume& merged, const std::vecto
         const TimedShare timed(stages_.account.clock(), &FrameShares::verification);
         const volume::Rect window = intersection(image.request.window, image.request.viewport);
         const ImageDifference difference = difference_between(first.pipeline(), drawn_->image(window), shown);
-        take_comparison(stages_.verifier.judge(difference, 0, *volume.counters), volume,
+        take_comparison(stages_.verifier.judge(difference, 1, 0, *volume.counters), volume,
                         stages_.account.frames());
       });
 }

@@ -9,11 +9,13 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <map>
 #include <string_view>
 #include <utility>
 
 #include "spu/track/program_sources.h"
 #include "spu/volume/context/context.h"
+#include "spu/volume/pipeline/block_members.h"
 #include "spu/volume/program/analysis.h"
 
 namespace understudy::spu {
@@ -294,6 +296,8 @@ bool read_texts(const GlContext& context, const ProgramRecord& record, ProgramSt
     const auto read = std::ranges::find(fragment->inputs, input.name, &program::Input::name);
     if (read == fragment->inputs.end()) continue;
     input.interpolation = qualifier_of(read->interpolation);
+    input.block = read->block;
+    input.place_in_block = read - fragment->inputs.begin();
     if (read->location < 0 || !record.vertex_shader) continue;
     if (!vertex) vertex = facts_of(context, program::Stage::vertex, record.vertex_sources);
     if (!vertex) {
@@ -311,6 +315,48 @@ bool read_texts(const GlContext& context, const ProgramRecord& record, ProgramSt
     return false;
   }
   return true;
+}
+
+/// Of an array, without the element.
+std::string_view variable_of(std::string_view name) {
+  return name.substr(0, name.find('['));
+}
+
+/// Names of the inputs that the uniform reaches; all where the vertex stage is not understood.
+std::vector<std::string> inputs_reached(const std::optional<program::StageFacts>& vertex,
+                                        const std::string& uniform, const ProgramStages& stages) {
+  const auto is_meant = [&](const program::Dependence& on) {
+    const program::Source& source = vertex->sources[on.source];
+    return (source.kind == program::SourceKind::uniform || source.kind == program::SourceKind::uniform_block) &&
+           variable_of(source.name) == variable_of(uniform);
+  };
+  std::vector<std::string> reached;
+  for (const StageInput& input : stages.inputs) {
+    const bool reaches = !vertex || std::ranges::any_of(vertex->outputs, [&](const program::Output& output) {
+      return output.name == input.output && std::ranges::any_of(output.on, is_meant);
+    });
+    if (reaches) reached.push_back(input.name);
+  }
+  return reached;
+}
+
+/// The observer keeps no uniform that reaches neither the position nor an input.
+void find_behind_inputs(const GlContext& context, const ProgramRecord& record, GLuint application,
+                        ProgramStages& stages) {
+  const auto vertex = facts_of(context, program::Stage::vertex, record.vertex_sources);
+  std::vector<BlockMember> members = block_members(context, application);
+  for_each_uniform(*context.gl, stages.observer, [&](const std::string& name, GLenum type) {
+    const bool in_block = std::ranges::find(members, variable_of(name), &BlockMember::name) != members.end();
+    const bool in_fragments =
+        std::ranges::find(stages.uniforms, name, &StageUniform::name) != stages.uniforms.end();
+    if (name.starts_with("gl_") || in_block || in_fragments) return;
+    VertexUniform uniform{{name, type}, inputs_reached(vertex, name, stages)};
+    if (!uniform.reaches.empty()) stages.vertex_uniforms.push_back(std::move(uniform));
+  });
+  for (BlockMember& member : members) {
+    std::vector<std::string> reached = inputs_reached(vertex, member.name, stages);
+    stages.block_members.push_back({std::move(member), std::move(reached)});
+  }
 }
 
 }  // namespace
@@ -335,7 +381,9 @@ ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, 
     }
     stages.observer = link_observer(context, record, application, names, trouble);
   }
-  if (stages.observer == 0 && stages.trouble.empty())
+  if (stages.observer != 0)
+    find_behind_inputs(context, record, application, stages);
+  else if (stages.trouble.empty())
     stages.trouble = "the vertex shader does not link for capture: " + trouble;
   return stages;
 }
@@ -351,27 +399,63 @@ struct OutputDeclaration {
 constexpr std::array<OutputDeclaration, 4> output_declarations{
     {{"", false}, {"smooth", false}, {"", true}, {"smooth", true}}};
 
+/// Of a member of an interface block, its name in the block.
+std::string_view name_in_block(const StageInput& input) {
+  const std::string_view name = input.name;
+  const std::string prefix = input.block + ".";
+  return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
+}
+
+/// How the probe's vertex stage writes an input. Blocks have an instance name there, for stages match them by
+/// the block's own name.
+std::string written_as(const StageInput& input) {
+  if (input.block.empty()) return input.name;
+  return fmt::format("understudy_{}.{}", input.block, name_in_block(input));
+}
+
+std::string declaration_of(const StageInput& input, const OutputDeclaration& declaration) {
+  const std::string location = declaration.locations && input.location >= 0 && input.block.empty()
+                                   ? fmt::format("layout(location = {}) ", input.location)
+                                   : std::string();
+  const char* const interpolation = input.integer                  ? "flat"
+                                    : !input.interpolation.empty() ? input.interpolation.c_str()
+                                                                   : declaration.smooth;
+  return fmt::format("{}{} {}{} {};\n", location, interpolation, input.block.empty() ? "out " : "",
+                     glsl_type(input), input.block.empty() ? input.name : name_in_block(input));
+}
+
+/// Stages match blocks by the names and types of all members, and by their order.
+std::string declarations_of(const std::vector<StageInput>& inputs, const OutputDeclaration& declaration) {
+  std::string declarations;
+  std::map<std::string, std::map<std::ptrdiff_t, std::string>> members_of_block;
+  for (const StageInput& input : inputs) {
+    if (input.name.starts_with("gl_")) continue;
+    if (input.block.empty())
+      declarations += declaration_of(input, declaration);
+    else
+      members_of_block[input.block][input.place_in_block] = declaration_of(input, declaration);
+  }
+  for (const auto& [block, members] : members_of_block) {
+    declarations += fmt::format("out {} {{\n", block);
+    for (const auto& [place, member] : members) declarations += member;
+    declarations += fmt::format("}} understudy_{};\n", block);
+  }
+  return declarations;
+}
+
 /// The vertex stage of a probe.
 std::string probe_source(const GlContext& context, const std::vector<StageInput>& inputs,
                          const std::string& coordinate, const OutputDeclaration& declaration) {
-  std::string declarations = context.core ? "#version 150\n" : "#version 130\n";
+  const bool blocks = std::ranges::any_of(inputs, [](const StageInput& input) { return !input.block.empty(); });
+  std::string declarations = context.core || blocks ? "#version 150\n" : "#version 130\n";
   if (declaration.locations) declarations += "#extension GL_ARB_separate_shader_objects : enable\n";
-  const auto placed = [&](const StageInput& input) {
-    return declaration.locations && input.location >= 0 ? fmt::format("layout(location = {}) ", input.location)
-                                                        : std::string();
-  };
+  declarations += declarations_of(inputs, declaration);
   std::string body;
   int others = 0;
   for (const StageInput& input : inputs) {
-    const std::string type = glsl_type(input);
-    if (!input.name.starts_with("gl_"))
-      declarations += fmt::format("{}{} out {} {};\n", placed(input),
-                                  input.integer                  ? "flat"
-                                  : !input.interpolation.empty() ? input.interpolation.c_str()
-                                                                 : declaration.smooth,
-                                  type, input.name);
+    const std::string name = written_as(input);
     if (input.name == coordinate) {
-      body += "  " + input.name +
+      body += "  " + name +
               (input.components == 2   ? " = unit;\n"
                : input.components == 3 ? " = vec3(unit, 0.5);\n"
                                        : " = vec4(unit, 0.5, 1.0);\n");
@@ -381,7 +465,7 @@ std::string probe_source(const GlContext& context, const std::vector<StageInput>
           input.integer
               ? ""
               : fmt::format(" + unit.x * understudy_across[{0}] + unit.y * understudy_up[{0}]", others);
-      body += fmt::format("  {} = {}((understudy_value[{}]{}){});\n", input.name, type, others, slope,
+      body += fmt::format("  {} = {}((understudy_value[{}]{}){});\n", name, glsl_type(input), others, slope,
                           swizzle[std::size_t(input.components)]);
       ++others;
     }
@@ -440,31 +524,6 @@ void copy_uniforms(const GlContext& context, GLuint from, GLuint to) {
 
 namespace {
 
-/// Larger blocks are not part of what OpenGL guarantees.
-constexpr GLint most_block_bytes = 1 << 16;
-
-/// Of a uniform block of the fragment stage; nothing where the buffer cannot be read.
-std::optional<std::vector<std::byte>> block_contents(const DispatchTable& gl, GLuint program, GLuint block) {
-  GLint binding = 0, bytes = 0, buffer = 0, bound = 0, mapped = 0;
-  GLint64 start = 0, room = 0;
-  gl.GetActiveUniformBlockiv(program, block, GL_UNIFORM_BLOCK_BINDING, &binding);
-  gl.GetActiveUniformBlockiv(program, block, GL_UNIFORM_BLOCK_DATA_SIZE, &bytes);
-  gl.GetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, GLuint(binding), &buffer);
-  gl.GetInteger64i_v(GL_UNIFORM_BUFFER_START, GLuint(binding), &start);
-  if (buffer == 0 || bytes <= 0 || bytes > most_block_bytes) return std::nullopt;
-  gl.GetIntegerv(GL_COPY_READ_BUFFER_BINDING, &bound);
-  gl.BindBuffer(GL_COPY_READ_BUFFER, GLuint(buffer));
-  gl.GetBufferParameteriv(GL_COPY_READ_BUFFER, GL_BUFFER_MAPPED, &mapped);
-  gl.GetBufferParameteri64v(GL_COPY_READ_BUFFER, GL_BUFFER_SIZE, &room);
-  std::optional<std::vector<std::byte>> contents;
-  if (mapped == GL_FALSE && start + bytes <= room) {
-    contents.emplace(std::size_t(bytes));
-    gl.GetBufferSubData(GL_COPY_READ_BUFFER, GLintptr(start), bytes, contents->data());
-  }
-  gl.BindBuffer(GL_COPY_READ_BUFFER, GLuint(bound));
-  return contents;
-}
-
 /// Numbers that differ where the blocks' contents do; one that equals nothing where they cannot be read.
 void append_block_contents(const DispatchTable& gl, GLuint program, std::vector<UniformValue>& values) {
   GLint blocks = 0;
@@ -478,10 +537,9 @@ void append_block_contents(const DispatchTable& gl, GLuint program, std::vector<
       values.push_back({{}, 0, std::numeric_limits<float>::quiet_NaN()});
       continue;
     }
-    const std::string_view text(reinterpret_cast<const char*>(contents->data()), contents->size());
-    // 64 bits as four numbers that floats hold.
-    for (std::uint64_t hash = std::hash<std::string_view>()(text), part = 0; part < 4; ++part, hash >>= 16)
-      values.push_back({{}, 0, float(hash & 0xffff)});
+    std::vector<float> digest;
+    append_digest(*contents, digest);
+    for (const float number : digest) values.push_back({{}, 0, number});
   }
 }
 

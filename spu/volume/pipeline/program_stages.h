@@ -3,12 +3,14 @@
 // stage under a vertex stage of ours, to show it chosen samples.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "dispatch/table.h"
+#include "spu/volume/pipeline/block_members.h"
 
 namespace understudy::spu {
 
@@ -22,8 +24,10 @@ struct StageInput {
   GLenum type = GL_FLOAT_VEC4;
   int components = 4;
   bool integer = false;
-  int location = -1;            ///< as the driver has placed it, where the fragment stage stands alone
-  std::string interpolation{};  ///< "flat", "noperspective"; empty: smooth
+  int location = -1;                  ///< as the driver has placed it, where the fragment stage stands alone
+  std::string interpolation{};        ///< "flat", "noperspective"; empty: smooth
+  std::string block{};                ///< the interface block whose member it is; empty: of none
+  std::ptrdiff_t place_in_block = 0;  ///< members are declared in this order
   std::string output{};  ///< of the vertex stage that it reads: another name where both stand at one location
   bool written = true;   ///< false: the vertex stage declares it at most, and no colour can depend on it
 };
@@ -34,11 +38,26 @@ struct StageUniform {
   GLenum type = GL_FLOAT;
 };
 
+/// A uniform that the vertex stage alone has, outside of blocks and not built in.
+struct VertexUniform {
+  StageUniform uniform;
+  std::vector<std::string>
+      reaches;  ///< names of the fragment stage's inputs; all where the text is not understood
+};
+
+/// A member of a uniform block of either stage.
+struct SharedMember {
+  BlockMember member;
+  std::vector<std::string> reaches;  ///< as of VertexUniform; empty: none by way of the vertex stage
+};
+
 /// Programs built from the sources of one link of the application's program. The names live in its context.
 struct ProgramStages {
   std::vector<StageInput> inputs;      ///< of the fragment stage, as far as they can be captured
   std::vector<StageUniform> uniforms;  ///< of the fragment stage: the camera's matrices are not among them
-  bool uniform_blocks = false;         ///< the fragment stage reads uniform buffers
+  std::vector<VertexUniform> vertex_uniforms;  ///< those that reach any of `inputs`
+  std::vector<SharedMember> block_members;     ///< where the vertex stage can be captured
+  bool uniform_blocks = false;                 ///< the fragment stage reads uniform buffers
   GLuint observer = 0;  ///< vertex stage; captures gl_Position, then every input that is written, interleaved
                         ///< as floats; 0: none
   std::string trouble;  ///< why the fragment stage cannot be shown chosen samples; empty: it can

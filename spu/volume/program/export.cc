@@ -2,6 +2,7 @@
 // From what the walk has found to facts.
 #include <algorithm>
 #include <map>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -60,6 +61,25 @@ Interpolation interpolation_of(const TQualifier& qualifier) {
 
 bool is_declared_input(const Variable& variable) {
   return variable.storage == EvqVaryingIn;
+}
+
+Input input_of(const TType& type, std::string name, std::uint32_t cells, std::uint32_t elements) {
+  const TQualifier& qualifier = type.getQualifier();
+  return {.name = std::move(name),
+          .components = int(cells / elements),
+          .elements = int(elements),
+          .integer = type.isIntegerDomain(),
+          .location = location_of(qualifier),
+          .packed_at = packed_at(qualifier),
+          .interpolation = interpolation_of(qualifier),
+          .centroid = qualifier.centroid,
+          .sample = qualifier.sample};
+}
+
+bool has_locations(const TType& block) {
+  return block.getQualifier().hasLocation() ||
+         std::ranges::any_of(*block.getStruct(),
+                             [](const TTypeLoc& member) { return member.type->getQualifier().hasLocation(); });
 }
 
 }  // namespace
@@ -128,16 +148,21 @@ void Walk::export_outputs(StageFacts& facts, SourceList& list) {
 void Walk::export_inputs(StageFacts& facts) {
   for (const Variable& variable : variables_.list()) {
     if (!is_declared_input(variable) || variable.cells == 0) continue;
-    const TQualifier& qualifier = variable.type->getQualifier();
-    facts.inputs.push_back({.name = variable.name,
-                            .components = int(variable.cells / variable.elements),
-                            .elements = int(variable.elements),
-                            .integer = variable.type->isIntegerDomain(),
-                            .location = location_of(qualifier),
-                            .packed_at = packed_at(qualifier),
-                            .interpolation = interpolation_of(qualifier),
-                            .centroid = qualifier.centroid,
-                            .sample = qualifier.sample});
+    const TType& type = *variable.type;
+    if (type.getBasicType() != EbtBlock || type.isArray() || has_locations(type)) {
+      facts.inputs.push_back(input_of(type, variable.name, variable.cells, variable.elements));
+      continue;
+    }
+    Cell first = variable.first;
+    for (const TTypeLoc& member : *type.getStruct()) {
+      const std::uint32_t cells = cells_of(*member.type);
+      const std::uint32_t elements =
+          member.type->isArray() ? cells / std::max(cells_of_element(*member.type), 1U) : 1;
+      facts.inputs.push_back(
+          input_of(*member.type, named(variable, first).name, cells, std::max(elements, 1U)));
+      facts.inputs.back().block = type.getTypeName().c_str();
+      first += cells;
+    }
   }
 }
 

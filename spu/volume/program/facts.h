@@ -128,6 +128,9 @@ struct Input {
   Interpolation interpolation = Interpolation::smooth;
   bool centroid = false;
   bool sample = false;
+  /// The interface block whose member it is; empty: of none, or of one that has locations or is an array. A
+  /// member of a block with an instance name is called "Block.member", of one without "member".
+  std::string block{};
 };
 
 /// One component of a shader stage's output.

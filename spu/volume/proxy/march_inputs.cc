@@ -2,7 +2,10 @@
 #include "spu/volume/proxy/march_inputs.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <map>
+#include <span>
 
 #include "spu/track/share_group.h"
 #include "spu/volume/context/context.h"
@@ -101,6 +104,98 @@ bool may_be_drawn(const MarchContext& measured, const ShareGroup& group, const s
   });
 }
 
+bool is_varying_of(const ProgramFindings& says, const program::Influence& influence, const std::string& input) {
+  const program::Source& source = says.facts.sources[influence.source];
+  return source.kind == program::SourceKind::varying && (source.name == input || source.name + "[0]" == input);
+}
+
+bool places_samples(const ProgramFindings& says, const std::string& input) {
+  return std::ranges::any_of(says.ray->coordinates, [&](const program::Influence& influence) {
+    return influence.flow == program::Flow::data && is_varying_of(says, influence, input);
+  });
+}
+
+/// Whether the input decides, by a branch or by the end of a loop, what samples look like or whether there are
+/// any, or is part of a colour, and places none.
+bool only_decides(const ProgramFindings& says, const std::string& input) {
+  const program::RayFinding& ray = *says.ray;
+  const bool decides = std::ranges::any_of(
+      std::array{&ray.data, &ray.branches, &ray.discards, &ray.loop_ends, &ray.coordinates},
+      [&](const auto* list) {
+        return std::ranges::any_of(
+            *list, [&](const program::Influence& influence) { return is_varying_of(says, influence, input); });
+      });
+  return decides && !places_samples(says, input);
+}
+
+/// The input's bounds over the draw, and what it is at the first vertices, of which a box has no more.
+void append_captured(const Capture& capture, std::size_t input, const StageInput& described,
+                     std::vector<float>& values) {
+  constexpr std::size_t most_vertices = 64;
+  const auto components = std::size_t(described.components);
+  for (std::size_t c = 0; c < components; ++c)
+    values.insert(values.end(), {capture.range.low[input][c], capture.range.high[input][c]});
+  if (described.integer || capture.stride == 0) return;
+  const std::size_t vertices = std::min(capture.data.size() / capture.stride, most_vertices);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    for (std::size_t c = 0; c < components; ++c) values.push_back(capture.value(v, input, c));
+  }
+}
+
+bool reaches_fragments(const ProgramFindings& says, const std::string& member) {
+  return std::ranges::any_of(says.ray->uniforms, [&](const program::UniformUse& use) {
+    const program::Source& source = says.facts.sources[use.source];
+    return source.kind == program::SourceKind::uniform_block &&
+           (source.name == member || source.name.starts_with(member + "["));
+  });
+}
+
+void append_block_members(const MarchContext& measured, const ProgramFindings& says, MarchInputs& inputs) {
+  std::map<GLuint, std::optional<std::vector<std::byte>>> contents_of_block;
+  for (const auto& [member, reaches] : measured.stages.block_members) {
+    if (reaches.empty() && !reaches_fragments(says, member.name)) continue;
+    const auto [known, is_new] = contents_of_block.try_emplace(member.block);
+    if (is_new)
+      known->second = block_contents(*measured.context.gl, measured.run.pipeline().program, member.block);
+    inputs.varying_begins.push_back(inputs.varying.size());
+    inputs.varying_chooses.push_back(
+        chooses_colours(says, member.name) ||
+        std::ranges::any_of(reaches, [&](const std::string& input) { return only_decides(says, input); }));
+    if (!known->second) {
+      inputs.varying.push_back(never_equal);
+      continue;
+    }
+    const std::span<const std::byte> contents = *known->second;
+    const std::size_t offset = std::min(member.offset, contents.size());
+    append_digest(contents.subspan(offset, std::min(member.bytes, contents.size() - offset)), inputs.varying);
+  }
+}
+
+void append_vertex_stage(const MarchContext& measured, const ProgramFindings& says, MarchInputs& inputs) {
+  const ProgramStages& stages = measured.stages;
+  const auto begin_vector = [&](bool chooses) {
+    inputs.varying_begins.push_back(inputs.varying.size());
+    inputs.varying_chooses.push_back(chooses);
+  };
+  for (const VertexUniform& vertex : stages.vertex_uniforms) {
+    if (is_scalar(vertex.uniform.type)) {
+      append_value(measured, vertex.uniform, inputs.fixed);
+      continue;
+    }
+    begin_vector(std::ranges::any_of(vertex.reaches,
+                                     [&](const std::string& input) { return only_decides(says, input); }));
+    append_value(measured, vertex.uniform, inputs.varying);
+  }
+  append_block_members(measured, says, inputs);
+  if (measured.seen == nullptr) return;
+  for (std::size_t i = 0; i < stages.inputs.size() && i < measured.seen->offsets.size(); ++i) {
+    const StageInput& input = stages.inputs[i];
+    if (!input.written || !only_decides(says, input.name)) continue;
+    begin_vector(true);
+    append_captured(*measured.seen, i, input, inputs.varying);
+  }
+}
+
 }  // namespace
 
 MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, const ProgramFindings& says) {
@@ -159,6 +254,8 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
     inputs.fixed.push_back(float(group.texture_version(other.texture)));
     append_lookup(measured.context, other, inputs.fixed);
   }
+  inputs.of_fragment_stage = inputs.varying.size();
+  append_vertex_stage(measured, says, inputs);
   return inputs;
 }
 
@@ -183,6 +280,14 @@ std::vector<float> discard_inputs(const MarchContext& measured, const ShareGroup
     if (decides) append_value(measured, uniform, depends);
   }
   return depends;
+}
+
+bool same_in_fragment_stage(const MarchInputs& before, const MarchInputs& now) {
+  const auto of_fragment_stage = [](const MarchInputs& inputs) {
+    return std::span(inputs.varying).first(inputs.of_fragment_stage);
+  };
+  return before.fixed == now.fixed && before.depths == now.depths &&
+         std::ranges::equal(of_fragment_stage(before), of_fragment_stage(now));
 }
 
 bool only_tables_differ(const MarchInputs& before, const MarchInputs& now) {

@@ -20,7 +20,10 @@ struct MarchInputs {
   std::vector<std::size_t> tables;
   /// Of `fixed`, uniforms that move samples, and decide about no fragment or colour.
   std::vector<std::size_t> steps;
+  /// First what the fragment stage has itself. Then, of the vertex stage, the uniforms that reach what it hands
+  /// on, and what it hands on that places no sample but decides about some: how far a vertex lies from a plane.
   std::vector<float> varying;
+  std::size_t of_fragment_stage = 0;  ///< so many numbers of `varying`
   /// Where each vector, matrix or number of `varying` begins.
   std::vector<std::size_t> varying_begins;
   /// Likewise: whether it decides, by a branch, what samples look like or whether they are left out.
@@ -28,7 +31,6 @@ struct MarchInputs {
   /// Depth textures and their contents, instead of which probes show the far plane: opaque geometry's may be
   /// copied in every frame.
   std::vector<float> depths;
-  bool operator==(const MarchInputs&) const = default;
 };
 
 /// `says` has a finding about ray casters.
@@ -38,6 +40,9 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
 /// where that cannot be told.
 std::vector<float> discard_inputs(const MarchContext& measured, const ShareGroup& group,
                                   const MarchInputs& inputs, const ProgramFindings& says);
+
+/// Whether the fragment stage has the same in all that it has itself.
+bool same_in_fragment_stage(const MarchInputs& before, const MarchInputs& now);
 
 /// Whether nothing of `fixed` differs but the tables.
 bool only_tables_differ(const MarchInputs& before, const MarchInputs& now);

@@ -86,10 +86,13 @@ VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, const March& m
   // Steps that were only likely are likely to be others now.
   for (const std::size_t step : inputs.steps)
     all[step].effect = march.steps_seen ? Effect::predicted : Effect::unknown;
+  std::size_t vector = 0;
   for (std::size_t i = 0; i < inputs.varying.size(); ++i) {
+    while (vector + 1 < inputs.varying_begins.size() && inputs.varying_begins[vector + 1] <= i) ++vector;
+    const Effect alone = inputs.varying_chooses[vector] ? Effect::decides : Effect::unknown;
     // Not a number: the depth of opaque geometry, which is drawn in every frame.
     const float value = inputs.varying[i];
-    all.push_back({std::isnan(value) ? 0.0F : value, follows[i] ? Effect::followed : Effect::unknown});
+    all.push_back({std::isnan(value) ? 0.0F : value, follows[i] ? Effect::followed : alone});
   }
   for (const float value : inputs.depths) all.push_back({value});
   return all;
@@ -348,7 +351,7 @@ std::string_view RayCasterStage::why_measured(const Draw& draw, const ProxyBox& 
                                               bool turned) const {
   const KnownMarch& known = draw.known.march;
   if (!known.march) return "the first of the volume";
-  const bool same = inputs == known.inputs;
+  const bool same = same_in_fragment_stage(known.inputs, inputs);
   if (!same) wait_for_earlier_drawing();
   const bool holds = same || (inputs.fixed == known.inputs.fixed &&
                               still_marches(draw.measured(), *known.march, box,

@@ -27,7 +27,7 @@ std::vector<std::size_t> changes(const VerificationSchedule::Inputs& before,
 
 bool VerificationSchedule::is_trusted(std::size_t index) const {
   if (inputs_[index].effect == Effect::predicted) return true;
-  return inputs_[index].effect != Effect::unknown &&
+  return inputs_[index].effect != Effect::unknown && inputs_[index].effect != Effect::decides &&
          std::any_of(changing_.begin(), changing_.end(), [&](const ChangingInput& input) {
            return input.index == index && input.right >= trusted_changes;
          });
@@ -58,6 +58,12 @@ void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint, do
     const double share = dense_ ? dense_sentinel_share : sentinel_share;
     credit_ms_ = std::min(credit_ms_ + share * *native, most_credited_images * sentinel_share * *native);
   }
+}
+
+double VerificationSchedule::bound() const {
+  const bool strict = std::ranges::any_of(
+      now_changed_, [&](std::size_t index) { return inputs_[index].effect == Effect::decides; });
+  return strict ? 0.5 : 1;
 }
 
 std::optional<double> VerificationSchedule::native_ms() const {

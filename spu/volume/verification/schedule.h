@@ -38,6 +38,7 @@ class VerificationSchedule {
   /// What a change of an input does.
   enum class Effect : std::uint8_t {
     unknown,    ///< it may decide about fragments: the next image is compared whole
+    decides,    ///< as unknown; it decides, by a branch, about samples, and may hide only few of them at first
     measured,   ///< it is measured anew, as a table's colours: compared whole until that was right a few times
     predicted,  ///< a table of which the text says that samples alone address it: measured anew, and sentinels
                 ///< suffice, more of them
@@ -57,6 +58,9 @@ class VerificationSchedule {
 
   /// Whether it is compared whole; else sentinels() many tiles are.
   bool whole_due() const { return !right_ || changed_ || grown_; }
+  /// The severity of a tile that is still right. Half of the usual where something changed that decides about
+  /// samples: a plane that has begun to cut shows less of itself than drivers may round.
+  double bound() const;
   /// How many tiles are to be compared now.
   int sentinels() const;
 

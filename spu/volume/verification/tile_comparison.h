@@ -35,7 +35,7 @@ struct TileDifference {
 
   /// 1 is the bound.
   double severity() const { return std::max(excess / max_tile_excess, common / max_common_difference); }
-  bool within_bound() const { return severity() <= 1; }
+  bool within_bound(double bound = 1) const { return severity() <= bound; }
 };
 
 struct ImageDifference {

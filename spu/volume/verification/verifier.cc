@@ -25,14 +25,15 @@ constexpr int sentinel_rim = 1;
 
 }  // namespace
 
-Refusal refusal_of(const ImageDifference& difference) {
-  const TileDifference& tile = difference.worst;
+Refusal refusal_of(const Comparison& comparison) {
+  const TileDifference& tile = comparison.difference.worst;
   return {fmt::format(
       "its image differs from the viewer's own in the {} x {} pixels at ({}, {}): by {:.1f}/255 on average "
       "beyond "
-      "their neighbours ({:.0f}/255 are allowed), an eighth of them by {:.0f}/255 ({:.0f}/255)",
-      tile.tile.width, tile.tile.height, tile.tile.x, tile.tile.y, 255 * tile.excess, 255 * max_tile_excess,
-      255 * tile.common, 255 * max_common_difference)};
+      "their neighbours ({:g}/255 are allowed), an eighth of them by {:.0f}/255 ({:g}/255)",
+      tile.tile.width, tile.tile.height, tile.tile.x, tile.tile.y, 255 * tile.excess,
+      comparison.bound * 255 * max_tile_excess, 255 * tile.common,
+      comparison.bound * 255 * max_common_difference)};
 }
 
 bool Verifier::whole_due(const VerifiedVolume& volume, bool eye_inside, std::uint64_t frames) const {
@@ -69,7 +70,7 @@ std::optional<Comparison> Verifier::compare_whole(const ImageToVerify& what, con
                   "move the eye out of the volume"};
   }
   volume.inside = what.eye_inside;
-  const Comparison comparison = judge(difference, native_ms, counters);
+  const Comparison comparison = judge(difference, volume.schedule.bound(), native_ms, counters);
   if (!comparison.right) lost_to_ = std::move(native);
   return comparison;
 }
@@ -78,11 +79,13 @@ bool Verifier::would_have_been_right(const Pipeline& pipeline, const volume::Ima
   return difference_between(pipeline, lost_to_, image).worst.within_bound();
 }
 
-Comparison Verifier::judge(const ImageDifference& difference, double native_ms, VolumeCounters& counters) {
+Comparison Verifier::judge(const ImageDifference& difference, double bound, double native_ms,
+                           VolumeCounters& counters) {
   count(difference, counters);
   account_.note([&](FrameRecord& frame) { frame.error_rms = std::sqrt(difference.mean_square); });
   const double asked_psnr = session_.options().verify_psnr;
-  return {difference, difference.worst.within_bound() && !(difference.psnr() < asked_psnr), native_ms};
+  const bool right = difference.worst.within_bound(bound) && !(difference.psnr() < asked_psnr);
+  return {difference, bound, right, native_ms};
 }
 
 void Verifier::count(const ImageDifference& difference, VolumeCounters& counters) {
@@ -137,7 +140,7 @@ std::optional<Comparison> Verifier::compare_sentinels(const ImageToVerify& what,
     }
     if (!difference.worst.within_bound()) {
       lost_to_ = std::move(native);
-      return Comparison{difference, false, {}};
+      return Comparison{.difference = difference, .right = false, .native_ms = {}};
     }
   }
   volume.schedule.sentinels_took(tiles, milliseconds_since(start));

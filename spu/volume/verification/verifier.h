@@ -22,12 +22,13 @@ namespace understudy::spu {
 /// Of an image, or of the first of its tiles that was wrong.
 struct Comparison {
   ImageDifference difference;
+  double bound = 1;                 ///< of the worst tile's severity
   bool right = false;               ///< within the bound
   std::optional<double> native_ms;  ///< of a whole image: what the application's own drawing took; 0: not known
 };
 
 /// The sentence for a comparison that was lost.
-Refusal refusal_of(const ImageDifference& difference);
+Refusal refusal_of(const Comparison& comparison);
 
 /// What is compared.
 struct ImageToVerify {
@@ -56,7 +57,7 @@ class Verifier {
   bool would_have_been_right(const Pipeline& pipeline, const volume::ImageView& image) const;
 
   /// The verdict on a whole image, which is counted.
-  Comparison judge(const ImageDifference& difference, double native_ms, VolumeCounters& counters);
+  Comparison judge(const ImageDifference& difference, double bound, double native_ms, VolumeCounters& counters);
 
  private:
   std::optional<Comparison> compare_whole(const ImageToVerify& what, const volume::ImageView& image,

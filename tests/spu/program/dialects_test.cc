@@ -99,6 +99,29 @@ TEST(Dialects, SayInterpolationAndLocations) {
   }
 }
 
+TEST(Dialects, NameTheMembersOfInterfaceBlocks) {
+  const StageFacts facts = facts_of(
+      "#version 420\nin Named { flat int label; noperspective vec2 place; mat2 turned[3]; } read;\n"
+      "in Nameless { vec4 tint; };\n"
+      "layout(location = 5) in Placed { vec3 there; } placed; in Several { vec3 each; } several[2];\n"
+      "out vec4 colour;\n"
+      "void main() { colour = tint + vec4(read.place, float(read.label), read.turned[1][0].x)\n"
+      "  + vec4(placed.there + several[1].each, 1.0); }\n");
+  std::vector<std::string> members;
+  for (const Input& input : facts.inputs) {
+    if (input.block.empty()) continue;
+    members.push_back(input.block + ": " + input.name + " " + std::to_string(input.components) + "x" +
+                      std::to_string(input.elements));
+    EXPECT_EQ(input.interpolation, input.name == "Named.label"   ? Interpolation::flat
+                                   : input.name == "Named.place" ? Interpolation::no_perspective
+                                                                 : Interpolation::smooth);
+    EXPECT_EQ(input.integer, input.name == "Named.label");
+  }
+  // Blocks that have locations, and arrays of blocks, are not taken apart.
+  EXPECT_THAT(members, ElementsAre("Named: Named.label 1x1", "Named: Named.place 2x1",
+                                   "Named: Named.turned[0] 4x3", "Nameless: tint 4x1"));
+}
+
 TEST(Dialects, LinkSeveralShadersOfAStage) {
   const std::vector<std::string> sources{
       "#version 120\nvarying vec3 tc; vec4 classified(float v); uniform sampler3D volume;\n"

@@ -29,6 +29,20 @@ TEST(VerificationSchedule, ComparesTheFirstImageAndNotTheSecond) {
   EXPECT_FALSE(compared(schedule, {{1}}));
 }
 
+TEST(VerificationSchedule, BoundsByHalfWhatDecidesAboutSamples) {
+  VerificationSchedule schedule;
+  const auto bound_at = [&](float plane, float eye) {
+    schedule.begin({{plane, Effect::decides}, {eye, Effect::unknown}}, footprint);
+    const double bound = schedule.bound();
+    schedule.whole_was_right(true, native_ms);
+    return bound;
+  };
+  EXPECT_EQ(bound_at(1, 1), 1) << "the first";
+  EXPECT_EQ(bound_at(1, 2), 1);
+  for (int image = 0; image < 10; ++image) EXPECT_EQ(bound_at(2 + float(image), 2), 0.5) << image;
+  EXPECT_EQ(bound_at(11, 2), 1) << "nothing has changed";
+}
+
 TEST(VerificationSchedule, AnImageOfNothingProvesNothing) {
   VerificationSchedule schedule;
   for (int image = 0; image < 20; ++image) {

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spu/volume/pipeline/block_members.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+
+#include "spu/volume/context/context.h"
+
+namespace understudy::spu {
+namespace {
+
+/// Larger blocks are not part of what OpenGL guarantees.
+constexpr GLint most_block_bytes = 1 << 16;
+
+struct Extent {
+  int columns = 1;  ///< of a matrix
+  int rows = 1;     ///< or components of a vector
+  int bytes_a_component = 4;
+};
+
+Extent extent_of(GLenum type) {
+  switch (type) {
+    case GL_FLOAT_VEC2:
+    case GL_INT_VEC2:
+    case GL_UNSIGNED_INT_VEC2:
+    case GL_BOOL_VEC2:
+      return {1, 2};
+    case GL_FLOAT_VEC3:
+    case GL_INT_VEC3:
+    case GL_UNSIGNED_INT_VEC3:
+    case GL_BOOL_VEC3:
+      return {1, 3};
+    case GL_FLOAT_VEC4:
+    case GL_INT_VEC4:
+    case GL_UNSIGNED_INT_VEC4:
+    case GL_BOOL_VEC4:
+      return {1, 4};
+    case GL_FLOAT_MAT2:
+      return {2, 2};
+    case GL_FLOAT_MAT2x3:
+    case GL_FLOAT_MAT3x2:
+    case GL_FLOAT_MAT3:
+      return {3, 3};
+    case GL_FLOAT:
+    case GL_INT:
+    case GL_UNSIGNED_INT:
+    case GL_BOOL:
+      return {1, 1};
+    case GL_DOUBLE:
+      return {1, 1, 8};
+    default:
+      return {4, 4};  // the largest, of floats: more than there is shows no less
+  }
+}
+
+/// Of the GL_UNIFORM_* of one uniform.
+std::size_t asked(const DispatchTable& gl, GLuint program, GLuint uniform, GLenum what) {
+  GLint answer = 0;
+  gl.GetActiveUniformsiv(program, 1, &uniform, what, &answer);
+  return std::size_t(std::max(answer, 0));
+}
+
+std::size_t bytes_of(const DispatchTable& gl, GLuint program, GLuint uniform, GLenum type, GLint elements) {
+  const Extent extent = extent_of(type);
+  const std::size_t column = std::size_t(extent.rows * extent.bytes_a_component);
+  const std::size_t stride = asked(gl, program, uniform, GL_UNIFORM_MATRIX_STRIDE);
+  const std::size_t one = std::size_t(extent.columns - 1) * std::max(stride, column) + column;
+  return std::size_t(std::max(elements, 1) - 1) * asked(gl, program, uniform, GL_UNIFORM_ARRAY_STRIDE) + one;
+}
+
+}  // namespace
+
+std::vector<BlockMember> block_members(const GlContext& context, GLuint program) {
+  constexpr int first_version_with_blocks = 310;
+  if (context.version < first_version_with_blocks) return {};
+  const DispatchTable& gl = *context.gl;
+  GLint count = 0;
+  gl.GetProgramiv(program, GL_ACTIVE_UNIFORMS, &count);
+  std::vector<BlockMember> members;
+  for (GLuint uniform = 0; uniform < GLuint(count); ++uniform) {
+    GLint block = -1;
+    gl.GetActiveUniformsiv(program, 1, &uniform, GL_UNIFORM_BLOCK_INDEX, &block);
+    if (block < 0) continue;
+    std::array<char, 256> name{};
+    GLint elements = 0;
+    GLenum type = 0;
+    gl.GetActiveUniform(program, uniform, GLsizei(name.size()), nullptr, &elements, &type, name.data());
+    std::string text = name.data();
+    if (text.ends_with("[0]")) text.resize(text.size() - 3);
+    members.push_back({std::move(text), GLuint(block), asked(gl, program, uniform, GL_UNIFORM_OFFSET),
+                       bytes_of(gl, program, uniform, type, elements)});
+  }
+  return members;
+}
+
+std::optional<std::vector<std::byte>> block_contents(const DispatchTable& gl, GLuint program, GLuint block) {
+  GLint binding = 0, bytes = 0, buffer = 0, bound = 0, mapped = 0, access = 0;
+  GLint64 start = 0, room = 0;
+  gl.GetActiveUniformBlockiv(program, block, GL_UNIFORM_BLOCK_BINDING, &binding);
+  gl.GetActiveUniformBlockiv(program, block, GL_UNIFORM_BLOCK_DATA_SIZE, &bytes);
+  gl.GetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, GLuint(binding), &buffer);
+  gl.GetInteger64i_v(GL_UNIFORM_BUFFER_START, GLuint(binding), &start);
+  if (buffer == 0 || bytes <= 0 || bytes > most_block_bytes) return std::nullopt;
+  gl.GetIntegerv(GL_COPY_READ_BUFFER_BINDING, &bound);
+  gl.BindBuffer(GL_COPY_READ_BUFFER, GLuint(buffer));
+  gl.GetBufferParameteriv(GL_COPY_READ_BUFFER, GL_BUFFER_MAPPED, &mapped);
+  gl.GetBufferParameteriv(GL_COPY_READ_BUFFER, GL_BUFFER_ACCESS_FLAGS, &access);
+  gl.GetBufferParameteri64v(GL_COPY_READ_BUFFER, GL_BUFFER_SIZE, &room);
+  std::optional<std::vector<std::byte>> contents;
+  if ((mapped == GL_FALSE || (access & GL_MAP_PERSISTENT_BIT) != 0) && start < room) {
+    contents.emplace(std::size_t(std::min(GLint64(bytes), room - start)));
+    gl.GetBufferSubData(GL_COPY_READ_BUFFER, GLintptr(start), GLsizeiptr(contents->size()), contents->data());
+  }
+  gl.BindBuffer(GL_COPY_READ_BUFFER, GLuint(bound));
+  return contents;
+}
+
+void append_digest(std::span<const std::byte> bytes, std::vector<float>& values) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  // 64 bits as four numbers that floats hold.
+  for (std::uint64_t hash = std::hash<std::string_view>()(text), part = 0; part < 4; ++part, hash >>= 16)
+    values.push_back(float(hash & 0xffff));
+}
+
+}  // namespace understudy::spu

@@ -76,14 +76,14 @@ void main()
               const float a = x - 0.5F, c = z - 0.5F;
               const float away = std::sqrt(a * a + c * c), around = std::atan2(c, a);
               const float top = 0.86F - 1.7F * away * away;
-              const float bell =
+              const float canopy =
                   std::exp(-130 * (y - top) * (y - top)) * std::clamp(5.5F - 12 * away, 0.0F, 1.0F);
               const float ring = away - 0.2F - 0.06F * std::sin(9 * y + 1);
               const float arms = std::exp(-110 * ring * ring) * (0.6F + 0.4F * std::cos(5 * around + 4 * y)) *
                                  std::clamp(3.4F - 5 * y, 0.0F, 1.0F);
               return std::clamp(
-                  0.08F + 0.8F * bell + 0.6F * arms + 0.05F * std::sin(11 * x + 6 * z) * std::cos(8 * y), 0.0F,
-                  1.0F);
+                  0.08F + 0.8F * canopy + 0.6F * arms + 0.05F * std::sin(11 * x + 6 * z) * std::cos(8 * y),
+                  0.0F, 1.0F);
             };
             std::vector<Colour> table;
             for (int i = 0; i < 256; ++i) {

@@ -137,7 +137,9 @@ void take_comparison(const std::optional<Comparison>& comparison, KnownVolume& v
     refusal.reason += "; tried again with samples rounded to 8 bits";
     throw Refusal{std::move(refusal)};
   }
-  schedule.lost();
+  using Loss = VerificationSchedule::Loss;
+  const bool strictness = comparison->bound < 1 && comparison->difference.worst.within_bound();
+  schedule.lost(strictness ? Loss::strictness : Loss::beyond_bound);
   volume.counters->verify_lost.fetch_add(1, std::memory_order_relaxed);
   volume.colours.probed.reset();
   volume.march.march.reset();

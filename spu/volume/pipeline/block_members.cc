@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/pipeline/block_members.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <string_view>
+#include <utility>
 
 #include "spu/volume/context/context.h"
 
 namespace understudy::spu {
 namespace {
 
-/// Larger blocks are not part of what OpenGL guarantees.
-constexpr GLint most_block_bytes = 1 << 16;
+/// Drivers allow at least a quarter of this, and some any size.
+constexpr GLint most_block_bytes = 1 << 20;
+/// Elements of a longer array are looked at together.
+constexpr std::size_t most_apart = 16;
 
 struct Extent {
   int columns = 1;  ///< of a matrix
@@ -41,18 +46,35 @@ Extent extent_of(GLenum type) {
     case GL_FLOAT_MAT2:
       return {2, 2};
     case GL_FLOAT_MAT2x3:
+      return {2, 3};
+    case GL_FLOAT_MAT2x4:
+      return {2, 4};
     case GL_FLOAT_MAT3x2:
+      return {3, 2};
     case GL_FLOAT_MAT3:
       return {3, 3};
-    case GL_FLOAT:
-    case GL_INT:
-    case GL_UNSIGNED_INT:
-    case GL_BOOL:
-      return {1, 1};
+    case GL_FLOAT_MAT3x4:
+      return {3, 4};
+    case GL_FLOAT_MAT4x2:
+      return {4, 2};
+    case GL_FLOAT_MAT4x3:
+      return {4, 3};
+    case GL_FLOAT_MAT4:
+      return {4, 4};
     case GL_DOUBLE:
       return {1, 1, 8};
+    case GL_DOUBLE_VEC2:
+      return {1, 2, 8};
+    case GL_DOUBLE_VEC3:
+      return {1, 3, 8};
+    case GL_DOUBLE_VEC4:
+      return {1, 4, 8};
+    case GL_DOUBLE_MAT2:
+    case GL_DOUBLE_MAT3:
+    case GL_DOUBLE_MAT4:
+      return {4, 4, 8};  // of smaller ones what follows, too
     default:
-      return {4, 4};  // the largest, of floats: more than there is shows no less
+      return {};
   }
 }
 
@@ -63,12 +85,37 @@ std::size_t asked(const DispatchTable& gl, GLuint program, GLuint uniform, GLenu
   return std::size_t(std::max(answer, 0));
 }
 
-std::size_t bytes_of(const DispatchTable& gl, GLuint program, GLuint uniform, GLenum type, GLint elements) {
-  const Extent extent = extent_of(type);
+std::size_t bytes_of_element(const DispatchTable& gl, GLuint program, GLuint uniform, GLenum type) {
+  Extent extent = extent_of(type);
+  if (asked(gl, program, uniform, GL_UNIFORM_IS_ROW_MAJOR) != 0) std::swap(extent.columns, extent.rows);
   const std::size_t column = std::size_t(extent.rows * extent.bytes_a_component);
   const std::size_t stride = asked(gl, program, uniform, GL_UNIFORM_MATRIX_STRIDE);
-  const std::size_t one = std::size_t(extent.columns - 1) * std::max(stride, column) + column;
-  return std::size_t(std::max(elements, 1) - 1) * asked(gl, program, uniform, GL_UNIFORM_ARRAY_STRIDE) + one;
+  return std::size_t(extent.columns - 1) * std::max(stride, column) + column;
+}
+
+/// Adds a uniform of a block, element by element.
+void append_elements(const DispatchTable& gl, GLuint program, GLuint uniform, GLuint block,
+                     std::vector<BlockMember>& members) {
+  std::array<char, 256> written{};
+  GLint listed = 0;
+  GLenum type = 0;
+  gl.GetActiveUniform(program, uniform, GLsizei(written.size()), nullptr, &listed, &type, written.data());
+  const std::string name = written.data();
+  const std::size_t elements = std::size_t(std::max(listed, 1));
+  const std::size_t stride = asked(gl, program, uniform, GL_UNIFORM_ARRAY_STRIDE);
+  const std::size_t bytes = bytes_of_element(gl, program, uniform, type);
+  const std::size_t offset = asked(gl, program, uniform, GL_UNIFORM_OFFSET);
+  if (!name.ends_with("[0]")) {
+    members.push_back({name, block, offset, bytes});
+    return;
+  }
+  const std::string array = name.substr(0, name.size() - 3);
+  if (elements > most_apart) {
+    members.push_back({array, block, offset, (elements - 1) * stride + bytes});
+    return;
+  }
+  for (std::size_t i = 0; i < elements; ++i)
+    members.push_back({fmt::format("{}[{}]", array, i), block, offset + i * stride, bytes});
 }
 
 }  // namespace
@@ -84,14 +131,7 @@ std::vector<BlockMember> block_members(const GlContext& context, GLuint program)
     GLint block = -1;
     gl.GetActiveUniformsiv(program, 1, &uniform, GL_UNIFORM_BLOCK_INDEX, &block);
     if (block < 0) continue;
-    std::array<char, 256> name{};
-    GLint elements = 0;
-    GLenum type = 0;
-    gl.GetActiveUniform(program, uniform, GLsizei(name.size()), nullptr, &elements, &type, name.data());
-    std::string text = name.data();
-    if (text.ends_with("[0]")) text.resize(text.size() - 3);
-    members.push_back({std::move(text), GLuint(block), asked(gl, program, uniform, GL_UNIFORM_OFFSET),
-                       bytes_of(gl, program, uniform, type, elements)});
+    append_elements(gl, program, uniform, GLuint(block), members);
   }
   return members;
 }

@@ -15,10 +15,9 @@ namespace understudy::spu {
 
 struct GlContext;
 
-/// A number, vector, matrix or array of these.
+/// A number, vector or matrix; of a long array, all of them.
 struct BlockMember {
-  std::string
-      name;  ///< "Block.member" of a block with an instance name, "member" of others; arrays without [0]
+  std::string name;        ///< "Block.member" of a block with an instance name, "lights[2].place" of others
   GLuint block = 0;        ///< its index in the program
   std::size_t offset = 0;  ///< bytes in the block
   std::size_t bytes = 0;   ///< with the gaps of its rows, but for the last one

@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -17,6 +18,7 @@
 #include "spu/volume/context/context.h"
 #include "spu/volume/pipeline/block_members.h"
 #include "spu/volume/program/analysis.h"
+#include "spu/volume/program/element_names.h"
 
 namespace understudy::spu {
 namespace {
@@ -283,6 +285,13 @@ const char* qualifier_of(program::Interpolation interpolation) {
   return "";
 }
 
+/// Of a member of an interface block, its name in the block.
+std::string_view name_in_block(const auto& member) {
+  const std::string_view name = member.name;
+  const std::string prefix = member.block + ".";
+  return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
+}
+
 /// Reads the texts for what queries do not tell: how inputs are interpolated, and which outputs of the vertex
 /// stage they read. Inputs and outputs that have locations are matched by these, whatever their names. A text
 /// that is not understood leaves all inputs smooth and matched by name: its volume is refused. False where what
@@ -298,13 +307,17 @@ bool read_texts(const GlContext& context, const ProgramRecord& record, ProgramSt
     input.interpolation = qualifier_of(read->interpolation);
     input.block = read->block;
     input.place_in_block = read - fragment->inputs.begin();
-    if (read->location < 0 || !record.vertex_shader) continue;
+    if ((read->location < 0 && read->block.empty()) || !record.vertex_shader) continue;
     if (!vertex) vertex = facts_of(context, program::Stage::vertex, record.vertex_sources);
+    if (!vertex && !read->block.empty()) continue;
     if (!vertex) {
       stages.trouble = "the vertex shader is not understood, and " + input.name + " is read by its location";
       return false;
     }
+    // A block may have an instance name in one of the stages only.
     const auto written = std::ranges::find_if(vertex->outputs, [&](const program::Output& output) {
+      if (!read->block.empty())
+        return output.block == read->block && name_in_block(output) == name_in_block(*read);
       return output.location == read->location && output.packed_at == read->packed_at;
     });
     if (written == vertex->outputs.end()) continue;
@@ -317,25 +330,42 @@ bool read_texts(const GlContext& context, const ProgramRecord& record, ProgramSt
   return true;
 }
 
-/// Of an array, without the element.
-std::string_view variable_of(std::string_view name) {
-  return name.substr(0, name.find('['));
+/// What of the vertex stage's outputs depends on one of `sources`, or does not.
+bool depends_on(const program::Output& output, const std::set<std::uint32_t>& sources) {
+  return std::ranges::any_of(output.on,
+                             [&](const program::Dependence& on) { return sources.contains(on.source); });
 }
 
-/// Names of the inputs that the uniform reaches; all where the vertex stage is not understood.
-std::vector<std::string> inputs_reached(const std::optional<program::StageFacts>& vertex,
-                                        const std::string& uniform, const ProgramStages& stages) {
-  const auto is_meant = [&](const program::Dependence& on) {
-    const program::Source& source = vertex->sources[on.source];
-    return (source.kind == program::SourceKind::uniform || source.kind == program::SourceKind::uniform_block) &&
-           variable_of(source.name) == variable_of(uniform);
-  };
-  std::vector<std::string> reached;
+/// The numbers of a uniform that do not reach the position.
+std::set<std::uint32_t> sources_beside_position(const program::StageFacts& vertex, const std::string& uniform) {
+  std::set<std::uint32_t> sources;
+  for (std::uint32_t i = 0; i < vertex.sources.size(); ++i) {
+    const program::Source& source = vertex.sources[i];
+    const bool is_uniform =
+        source.kind == program::SourceKind::uniform || source.kind == program::SourceKind::uniform_block;
+    if (is_uniform && program::may_be_same_element(source.name, uniform)) sources.insert(i);
+  }
+  for (const program::Output& output : vertex.outputs) {
+    if (output.name != "gl_Position") continue;
+    for (const program::Dependence& on : output.on) sources.erase(on.source);
+  }
+  return sources;
+}
+
+/// What the uniform reaches, as VertexUniform has it.
+std::vector<InputComponent> components_reached(const std::optional<program::StageFacts>& vertex,
+                                               const std::string& uniform, const ProgramStages& stages) {
+  std::vector<InputComponent> reached;
+  const auto sources = vertex ? sources_beside_position(*vertex, uniform) : std::set<std::uint32_t>();
   for (const StageInput& input : stages.inputs) {
-    const bool reaches = !vertex || std::ranges::any_of(vertex->outputs, [&](const program::Output& output) {
-      return output.name == input.output && std::ranges::any_of(output.on, is_meant);
-    });
-    if (reaches) reached.push_back(input.name);
+    if (!vertex) {
+      for (int c = 0; c < input.components; ++c) reached.push_back({input.name, c});
+      continue;
+    }
+    for (const program::Output& output : vertex->outputs) {
+      if (output.name == input.output && depends_on(output, sources))
+        reached.push_back({input.name, output.component});
+    }
   }
   return reached;
 }
@@ -346,20 +376,27 @@ void find_behind_inputs(const GlContext& context, const ProgramRecord& record, G
   const auto vertex = facts_of(context, program::Stage::vertex, record.vertex_sources);
   std::vector<BlockMember> members = block_members(context, application);
   for_each_uniform(*context.gl, stages.observer, [&](const std::string& name, GLenum type) {
-    const bool in_block = std::ranges::find(members, variable_of(name), &BlockMember::name) != members.end();
+    const bool in_block = std::ranges::any_of(
+        members, [&](const BlockMember& member) { return program::may_be_same_element(member.name, name); });
     const bool in_fragments =
         std::ranges::find(stages.uniforms, name, &StageUniform::name) != stages.uniforms.end();
     if (name.starts_with("gl_") || in_block || in_fragments) return;
-    VertexUniform uniform{{name, type}, inputs_reached(vertex, name, stages)};
+    VertexUniform uniform{{name, type}, components_reached(vertex, name, stages)};
     if (!uniform.reaches.empty()) stages.vertex_uniforms.push_back(std::move(uniform));
   });
   for (BlockMember& member : members) {
-    std::vector<std::string> reached = inputs_reached(vertex, member.name, stages);
+    std::vector<InputComponent> reached = components_reached(vertex, member.name, stages);
     stages.block_members.push_back({std::move(member), std::move(reached)});
   }
 }
 
 }  // namespace
+
+bool is_named(const StageInput& input, const std::string& name) {
+  return program::may_be_same_element(input.name, name) ||
+         (name == "gl_Color" && input.name == "gl_FrontColor") ||
+         (name == "gl_SecondaryColor" && input.name == "gl_FrontSecondaryColor");
+}
 
 ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application) {
   ProgramStages stages;
@@ -398,13 +435,6 @@ struct OutputDeclaration {
 
 constexpr std::array<OutputDeclaration, 4> output_declarations{
     {{"", false}, {"smooth", false}, {"", true}, {"smooth", true}}};
-
-/// Of a member of an interface block, its name in the block.
-std::string_view name_in_block(const StageInput& input) {
-  const std::string_view name = input.name;
-  const std::string prefix = input.block + ".";
-  return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
-}
 
 /// How the probe's vertex stage writes an input. Blocks have an instance name there, for stages match them by
 /// the block's own name.

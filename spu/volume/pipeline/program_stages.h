@@ -38,26 +38,33 @@ struct StageUniform {
   GLenum type = GL_FLOAT;
 };
 
+/// One number of an input of the fragment stage.
+struct InputComponent {
+  std::string input;
+  int component = 0;
+};
+
 /// A uniform that the vertex stage alone has, outside of blocks and not built in.
 struct VertexUniform {
   StageUniform uniform;
-  std::vector<std::string>
-      reaches;  ///< names of the fragment stage's inputs; all where the text is not understood
+  /// By numbers of it that do not reach the position: those that do are seen where the volume's box is. All
+  /// inputs where the text is not understood.
+  std::vector<InputComponent> reaches;
 };
 
 /// A member of a uniform block of either stage.
-struct SharedMember {
+struct ProgramBlockMember {
   BlockMember member;
-  std::vector<std::string> reaches;  ///< as of VertexUniform; empty: none by way of the vertex stage
+  std::vector<InputComponent> reaches;  ///< as of VertexUniform
 };
 
 /// Programs built from the sources of one link of the application's program. The names live in its context.
 struct ProgramStages {
   std::vector<StageInput> inputs;      ///< of the fragment stage, as far as they can be captured
   std::vector<StageUniform> uniforms;  ///< of the fragment stage: the camera's matrices are not among them
-  std::vector<VertexUniform> vertex_uniforms;  ///< those that reach any of `inputs`
-  std::vector<SharedMember> block_members;     ///< where the vertex stage can be captured
-  bool uniform_blocks = false;                 ///< the fragment stage reads uniform buffers
+  std::vector<VertexUniform> vertex_uniforms;     ///< those that reach any of `inputs` so
+  std::vector<ProgramBlockMember> block_members;  ///< where the vertex stage can be captured
+  bool uniform_blocks = false;                    ///< the fragment stage reads uniform buffers
   GLuint observer = 0;  ///< vertex stage; captures gl_Position, then every input that is written, interleaved
                         ///< as floats; 0: none
   std::string trouble;  ///< why the fragment stage cannot be shown chosen samples; empty: it can
@@ -70,6 +77,10 @@ struct UniformValue {
   float value = 0;
   bool chooses = false;  ///< an integer or a truth value: what branches are usually decided by
 };
+
+/// Whether a fragment shader means the input by that name: gl_Color is what the vertex stage has written to
+/// gl_FrontColor.
+bool is_named(const StageInput& input, const std::string& name);
 
 /// Needs the program's record; `application` is the program itself, for attribute locations.
 ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application);

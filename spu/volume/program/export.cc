@@ -82,6 +82,12 @@ bool has_locations(const TType& block) {
                              [](const TTypeLoc& member) { return member.type->getQualifier().hasLocation(); });
 }
 
+/// Empty: none, or one that has locations or is an array.
+std::string block_of(const TType& type) {
+  if (type.getBasicType() != EbtBlock || type.isArray() || has_locations(type)) return {};
+  return type.getTypeName().c_str();
+}
+
 }  // namespace
 
 StageFacts Walk::export_facts(int version) {
@@ -134,6 +140,7 @@ void Walk::export_outputs(StageFacts& facts, SourceList& list) {
       output.packed_at = packed_at(qualifier);
       if (qualifier.hasIndex()) output.index = int(qualifier.layoutIndex);
       output.interpolation = interpolation_of(qualifier);
+      output.block = block_of(*variable.type);
       if (state_.reachable) {
         const Scalar& value = state_.cells[cell];
         output.written = value.number != cell;
@@ -149,7 +156,8 @@ void Walk::export_inputs(StageFacts& facts) {
   for (const Variable& variable : variables_.list()) {
     if (!is_declared_input(variable) || variable.cells == 0) continue;
     const TType& type = *variable.type;
-    if (type.getBasicType() != EbtBlock || type.isArray() || has_locations(type)) {
+    const std::string block = block_of(type);
+    if (block.empty()) {
       facts.inputs.push_back(input_of(type, variable.name, variable.cells, variable.elements));
       continue;
     }
@@ -160,7 +168,7 @@ void Walk::export_inputs(StageFacts& facts) {
           member.type->isArray() ? cells / std::max(cells_of_element(*member.type), 1U) : 1;
       facts.inputs.push_back(
           input_of(*member.type, named(variable, first).name, cells, std::max(elements, 1U)));
-      facts.inputs.back().block = type.getTypeName().c_str();
+      facts.inputs.back().block = block;
       first += cells;
     }
   }

@@ -145,6 +145,7 @@ struct Output {
   Dependences on;
   std::optional<std::uint32_t> exact;  ///< the source that it equals
   Interpolation interpolation = Interpolation::smooth;
+  std::string block{};  ///< as Input has it
 };
 
 struct Discard {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "spu/volume/program/element_names.h"
+
 namespace understudy::spu {
 namespace {
 
@@ -50,17 +52,9 @@ std::optional<Refusal> refusal_of_side_effects(const StageFacts& facts) {
   return {};
 }
 
-/// Names with and without the array element that queries of OpenGL add.
-bool same_variable(const std::string& a, const std::string& b) {
-  return a == b || a == b + "[0]" || b == a + "[0]";
-}
-
 const StageInput* input_of(const ProgramStages& stages, const std::string& name) {
-  // A shader reads gl_Color where the vertex stage writes gl_FrontColor.
-  const auto found = std::ranges::find_if(stages.inputs, [&](const StageInput& input) {
-    return same_variable(input.name, name) || (name == "gl_Color" && input.name == "gl_FrontColor") ||
-           (name == "gl_SecondaryColor" && input.name == "gl_FrontSecondaryColor");
-  });
+  const auto found =
+      std::ranges::find_if(stages.inputs, [&](const StageInput& input) { return is_named(input, name); });
   return found == stages.inputs.end() ? nullptr : &*found;
 }
 
@@ -231,7 +225,8 @@ VerificationSchedule::Inputs uniform_inputs(const ProgramFindings& findings,
              const Source& source = findings.facts.sources[use.source];
              if (!use.discard && !use.branch && !use.coordinate) return false;
              if (value.name.empty()) return source.kind == SourceKind::uniform_block;
-             return source.component == value.component && same_variable(source.name, std::string(value.name));
+             return source.component == value.component &&
+                    program::may_be_same_element(source.name, value.name);
            });
   };
   using Effect = VerificationSchedule::Effect;

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <map>
 #include <span>
 
 #include "spu/track/share_group.h"
 #include "spu/volume/context/context.h"
+#include "spu/volume/program/element_names.h"
 #include "spu/volume/proxy/cuts.h"
 #include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/other_inputs.h"
 #include "spu/volume/texture/texture_parameter.h"
 
 namespace understudy::spu {
@@ -35,30 +36,37 @@ bool is_scalar(GLenum type) {
 std::size_t components_of_type(GLenum type) {
   switch (type) {
     case GL_FLOAT_VEC2:
+    case GL_INT_VEC2:
+    case GL_UNSIGNED_INT_VEC2:
+    case GL_BOOL_VEC2:
       return 2;
     case GL_FLOAT_VEC3:
+    case GL_INT_VEC3:
+    case GL_UNSIGNED_INT_VEC3:
+    case GL_BOOL_VEC3:
       return 3;
     case GL_FLOAT_VEC4:
+    case GL_INT_VEC4:
+    case GL_UNSIGNED_INT_VEC4:
+    case GL_BOOL_VEC4:
     case GL_FLOAT_MAT2:
       return 4;
+    case GL_FLOAT_MAT2x3:
+    case GL_FLOAT_MAT3x2:
+      return 6;
+    case GL_FLOAT_MAT2x4:
+    case GL_FLOAT_MAT4x2:
+      return 8;
     case GL_FLOAT_MAT3:
       return 9;
+    case GL_FLOAT_MAT3x4:
+    case GL_FLOAT_MAT4x3:
+      return 12;
     case GL_FLOAT_MAT4:
       return 16;
     default:
       return 1;
   }
-}
-
-/// Of a uniform that the program still has.
-void append_value(const MarchContext& measured, const StageUniform& uniform, std::vector<float>& values) {
-  const DispatchTable& gl = *measured.context.gl;
-  const GLuint program = measured.run.pipeline().program;
-  const GLint location = gl.GetUniformLocation(program, uniform.name.c_str());
-  if (location < 0) return;
-  std::array<GLfloat, 16> value{};
-  gl.GetUniformfv(program, location, value.data());
-  values.insert(values.end(), value.begin(), value.begin() + std::ptrdiff_t(components_of_type(uniform.type)));
 }
 
 /// How a texture of 1 or 2 dimensions is looked up between texels and beyond its ends.
@@ -87,12 +95,6 @@ bool moves_samples_only(const ProgramFindings& says, const std::string& name) {
   return moves;
 }
 
-bool chooses_colours(const ProgramFindings& says, const std::string& name) {
-  return std::ranges::any_of(says.ray->uniforms, [&](const program::UniformUse& use) {
-    return use.chooses_colour && says.facts.sources[use.source].name == name;
-  });
-}
-
 /// Whether the sampler may have a texture that the application draws into. Volumes and depth textures, instead
 /// of which probes show fields and the far plane, do not count.
 bool may_be_drawn(const MarchContext& measured, const ShareGroup& group, const std::string& sampler) {
@@ -104,99 +106,23 @@ bool may_be_drawn(const MarchContext& measured, const ShareGroup& group, const s
   });
 }
 
-bool is_varying_of(const ProgramFindings& says, const program::Influence& influence, const std::string& input) {
-  const program::Source& source = says.facts.sources[influence.source];
-  return source.kind == program::SourceKind::varying && (source.name == input || source.name + "[0]" == input);
-}
-
-bool places_samples(const ProgramFindings& says, const std::string& input) {
-  return std::ranges::any_of(says.ray->coordinates, [&](const program::Influence& influence) {
-    return influence.flow == program::Flow::data && is_varying_of(says, influence, input);
-  });
-}
-
-/// Whether the input decides, by a branch or by the end of a loop, what samples look like or whether there are
-/// any, or is part of a colour, and places none.
-bool only_decides(const ProgramFindings& says, const std::string& input) {
-  const program::RayFinding& ray = *says.ray;
-  const bool decides = std::ranges::any_of(
-      std::array{&ray.data, &ray.branches, &ray.discards, &ray.loop_ends, &ray.coordinates},
-      [&](const auto* list) {
-        return std::ranges::any_of(
-            *list, [&](const program::Influence& influence) { return is_varying_of(says, influence, input); });
-      });
-  return decides && !places_samples(says, input);
-}
-
-/// The input's bounds over the draw, and what it is at the first vertices, of which a box has no more.
-void append_captured(const Capture& capture, std::size_t input, const StageInput& described,
-                     std::vector<float>& values) {
-  constexpr std::size_t most_vertices = 64;
-  const auto components = std::size_t(described.components);
-  for (std::size_t c = 0; c < components; ++c)
-    values.insert(values.end(), {capture.range.low[input][c], capture.range.high[input][c]});
-  if (described.integer || capture.stride == 0) return;
-  const std::size_t vertices = std::min(capture.data.size() / capture.stride, most_vertices);
-  for (std::size_t v = 0; v < vertices; ++v) {
-    for (std::size_t c = 0; c < components; ++c) values.push_back(capture.value(v, input, c));
-  }
-}
-
-bool reaches_fragments(const ProgramFindings& says, const std::string& member) {
-  return std::ranges::any_of(says.ray->uniforms, [&](const program::UniformUse& use) {
-    const program::Source& source = says.facts.sources[use.source];
-    return source.kind == program::SourceKind::uniform_block &&
-           (source.name == member || source.name.starts_with(member + "["));
-  });
-}
-
-void append_block_members(const MarchContext& measured, const ProgramFindings& says, MarchInputs& inputs) {
-  std::map<GLuint, std::optional<std::vector<std::byte>>> contents_of_block;
-  for (const auto& [member, reaches] : measured.stages.block_members) {
-    if (reaches.empty() && !reaches_fragments(says, member.name)) continue;
-    const auto [known, is_new] = contents_of_block.try_emplace(member.block);
-    if (is_new)
-      known->second = block_contents(*measured.context.gl, measured.run.pipeline().program, member.block);
-    inputs.varying_begins.push_back(inputs.varying.size());
-    inputs.varying_chooses.push_back(
-        chooses_colours(says, member.name) ||
-        std::ranges::any_of(reaches, [&](const std::string& input) { return only_decides(says, input); }));
-    if (!known->second) {
-      inputs.varying.push_back(never_equal);
-      continue;
-    }
-    const std::span<const std::byte> contents = *known->second;
-    const std::size_t offset = std::min(member.offset, contents.size());
-    append_digest(contents.subspan(offset, std::min(member.bytes, contents.size() - offset)), inputs.varying);
-  }
-}
-
-void append_vertex_stage(const MarchContext& measured, const ProgramFindings& says, MarchInputs& inputs) {
-  const ProgramStages& stages = measured.stages;
-  const auto begin_vector = [&](bool chooses) {
-    inputs.varying_begins.push_back(inputs.varying.size());
-    inputs.varying_chooses.push_back(chooses);
-  };
-  for (const VertexUniform& vertex : stages.vertex_uniforms) {
-    if (is_scalar(vertex.uniform.type)) {
-      append_value(measured, vertex.uniform, inputs.fixed);
-      continue;
-    }
-    begin_vector(std::ranges::any_of(vertex.reaches,
-                                     [&](const std::string& input) { return only_decides(says, input); }));
-    append_value(measured, vertex.uniform, inputs.varying);
-  }
-  append_block_members(measured, says, inputs);
-  if (measured.seen == nullptr) return;
-  for (std::size_t i = 0; i < stages.inputs.size() && i < measured.seen->offsets.size(); ++i) {
-    const StageInput& input = stages.inputs[i];
-    if (!input.written || !only_decides(says, input.name)) continue;
-    begin_vector(true);
-    append_captured(*measured.seen, i, input, inputs.varying);
-  }
-}
-
 }  // namespace
+
+void append_value(const MarchContext& measured, const StageUniform& uniform, std::vector<float>& values) {
+  const DispatchTable& gl = *measured.context.gl;
+  const GLuint program = measured.run.pipeline().program;
+  const GLint location = gl.GetUniformLocation(program, uniform.name.c_str());
+  if (location < 0) return;
+  std::array<GLfloat, 16> value{};
+  gl.GetUniformfv(program, location, value.data());
+  values.insert(values.end(), value.begin(), value.begin() + std::ptrdiff_t(components_of_type(uniform.type)));
+}
+
+bool chooses_colours(const ProgramFindings& says, const std::string& uniform) {
+  return std::ranges::any_of(says.ray->uniforms, [&](const program::UniformUse& use) {
+    return use.chooses_colour && program::may_be_same_element(says.facts.sources[use.source].name, uniform);
+  });
+}
 
 MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, const ProgramFindings& says) {
   const DispatchTable& gl = *measured.context.gl;
@@ -255,7 +181,7 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
     append_lookup(measured.context, other, inputs.fixed);
   }
   inputs.of_fragment_stage = inputs.varying.size();
-  append_vertex_stage(measured, says, inputs);
+  append_other_inputs(measured, says, inputs);
   return inputs;
 }
 

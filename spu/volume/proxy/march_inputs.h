@@ -20,10 +20,10 @@ struct MarchInputs {
   std::vector<std::size_t> tables;
   /// Of `fixed`, uniforms that move samples, and decide about no fragment or colour.
   std::vector<std::size_t> steps;
-  /// First what the fragment stage has itself. Then, of the vertex stage, the uniforms that reach what it hands
-  /// on, and what it hands on that places no sample but decides about some: how far a vertex lies from a plane.
+  /// First what the fragment stage has itself, and then what other_inputs.h adds.
   std::vector<float> varying;
   std::size_t of_fragment_stage = 0;  ///< so many numbers of `varying`
+  bool unreadable = false;  ///< something that it depends on cannot be told: it may be another every time
   /// Where each vector, matrix or number of `varying` begins.
   std::vector<std::size_t> varying_begins;
   /// Likewise: whether it decides, by a branch, what samples look like or whether they are left out.
@@ -35,6 +35,12 @@ struct MarchInputs {
 
 /// `says` has a finding about ray casters.
 MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, const ProgramFindings& says);
+
+/// What a uniform holds that the program still has.
+void append_value(const MarchContext& measured, const StageUniform& uniform, std::vector<float>& values);
+
+/// Whether the uniform decides, by a branch, what colours are.
+bool chooses_colours(const ProgramFindings& says, const std::string& uniform);
 
 /// What decides, with the place in the window, which fragments the program discards. Never equal to another
 /// where that cannot be told.

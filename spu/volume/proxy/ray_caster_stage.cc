@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <compare>
+#include <limits>
 #include <utility>
 
 #include "compositor/blend.h"
@@ -95,6 +96,8 @@ VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, const March& m
     all.push_back({std::isnan(value) ? 0.0F : value, follows[i] ? Effect::followed : alone});
   }
   for (const float value : inputs.depths) all.push_back({value});
+  // What is no number is another every time.
+  if (inputs.unreadable) all.push_back({std::numeric_limits<float>::quiet_NaN(), Effect::unknown});
   return all;
 }
 

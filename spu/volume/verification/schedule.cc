@@ -45,11 +45,14 @@ void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint, do
   // An image that was not compared leaves its changes to the next.
   if (!changed_) now_changed_.clear();
   for (const std::size_t index : changed) {
-    if (std::find(now_changed_.begin(), now_changed_.end(), index) == now_changed_.end())
-      now_changed_.push_back(index);
+    const bool decides = inputs_[index].effect == Effect::decides;
+    const auto known = std::ranges::find(now_changed_, index, &Change::index);
+    if (known == now_changed_.end())
+      now_changed_.push_back({index, decides});
+    else
+      known->decides |= decides;
   }
-  changed_ =
-      std::any_of(now_changed_.begin(), now_changed_.end(), [&](std::size_t i) { return !is_trusted(i); });
+  changed_ = std::ranges::any_of(now_changed_, [&](const Change& change) { return !is_trusted(change.index); });
   dense_ = !changed.empty();
   footprint_ = footprint;
   samples_ = density * double(footprint);
@@ -61,9 +64,7 @@ void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint, do
 }
 
 double VerificationSchedule::bound() const {
-  const bool strict = std::ranges::any_of(
-      now_changed_, [&](std::size_t index) { return inputs_[index].effect == Effect::decides; });
-  return strict ? 0.5 : 1;
+  return std::ranges::any_of(now_changed_, &Change::decides) ? 0.5 : 1;
 }
 
 std::optional<double> VerificationSchedule::native_ms() const {
@@ -87,9 +88,10 @@ void VerificationSchedule::whole_was_right(bool anything_visible, double native_
     lost_in_a_row_ = 0;
   }
   right_footprint_ = std::max(right_footprint_, footprint_);
-  for (const std::size_t index : now_changed_) {
-    const auto known = std::find_if(changing_.begin(), changing_.end(),
-                                    [&](const ChangingInput& input) { return input.index == index; });
+  for (const auto& [index, decides] : now_changed_) {
+    const auto known =
+        std::find_if(changing_.begin(), changing_.end(),
+                     [index = index](const ChangingInput& input) { return input.index == index; });
     if (known == changing_.end()) {
       changing_.push_back({index, 1});
     } else {
@@ -110,13 +112,13 @@ void VerificationSchedule::sentinels_took(int count, double ms) {
   *ms_a_sentinel_ += 0.2 * (one - *ms_a_sentinel_);
 }
 
-void VerificationSchedule::lost() {
+void VerificationSchedule::lost(Loss loss) {
   right_ = false;
   to_prove_ = right_after_loss;
   right_footprint_ = 0;
   changing_.clear();
   ++lost_in_a_row_;
-  ++lost_ever_;
+  if (loss == Loss::beyond_bound) ++lost_ever_;
 }
 
 }  // namespace understudy::spu

@@ -51,6 +51,9 @@ class VerificationSchedule {
     Effect effect = Effect::measured;
   };
   using Inputs = std::vector<Input>;
+  /// `strictness`: the image would have been right to the usual bound. It is no proof that the volume is not
+  /// understood, and does not count among all losses.
+  enum class Loss : std::uint8_t { beyond_bound, strictness };
 
   /// The next image is about to be shown. `footprint`: pixels that it covers; `density`: of the samples on
   /// their rays, in a unit that stays.
@@ -67,7 +70,7 @@ class VerificationSchedule {
   /// The whole image was compared; `native_ms` is what the application's own took.
   void whole_was_right(bool anything_visible, double native_ms);
   void sentinels_took(int count, double ms);
-  void lost();
+  void lost(Loss loss = Loss::beyond_bound);
   /// What was measured now may be right in one view and wrong in another: so many images that show something
   /// must be right before sentinels suffice.
   void ask_for_several() {
@@ -92,9 +95,14 @@ class VerificationSchedule {
     int right = 0;  ///< comparisons that were right after it had changed
   };
   bool is_trusted(std::size_t index) const;
+  /// Since the last image that was compared and right.
+  struct Change {
+    std::size_t index;
+    bool decides;  ///< it was of Effect::decides when it changed; it may have come back since
+  };
 
   Inputs inputs_;  ///< of the last image that was begun
-  std::vector<std::size_t> now_changed_;
+  std::vector<Change> now_changed_;
   std::vector<ChangingInput> changing_;
   std::size_t footprint_ = 0;        ///< of the image that is begun
   double samples_ = 0;               ///< likewise, in a unit that stays

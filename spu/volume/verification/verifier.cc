@@ -71,12 +71,12 @@ std::optional<Comparison> Verifier::compare_whole(const ImageToVerify& what, con
   }
   volume.inside = what.eye_inside;
   const Comparison comparison = judge(difference, volume.schedule.bound(), native_ms, counters);
-  if (!comparison.right) lost_to_ = std::move(native);
+  if (!comparison.right) lost_to_ = {std::move(native), comparison.bound};
   return comparison;
 }
 
 bool Verifier::would_have_been_right(const Pipeline& pipeline, const volume::ImageView& image) const {
-  return difference_between(pipeline, lost_to_, image).worst.within_bound();
+  return difference_between(pipeline, lost_to_.native, image).worst.within_bound(lost_to_.bound);
 }
 
 Comparison Verifier::judge(const ImageDifference& difference, double bound, double native_ms,
@@ -139,7 +139,7 @@ std::optional<Comparison> Verifier::compare_sentinels(const ImageToVerify& what,
       counters.verify_worst_frame = account_.frames() + 1;
     }
     if (!difference.worst.within_bound()) {
-      lost_to_ = std::move(native);
+      lost_to_ = {std::move(native), 1};
       return Comparison{.difference = difference, .right = false, .native_ms = {}};
     }
   }

@@ -71,7 +71,12 @@ class Verifier {
   const GlContext& context_;
   RenderSession& session_;
   FrameAccount& account_;
-  NativeImage lost_to_;  ///< what the application drew when a comparison was lost
+  /// When a comparison was lost: what the application drew, and the bound.
+  struct Lost {
+    NativeImage native;
+    double bound = 1;
+  };
+  Lost lost_to_;
   std::unique_ptr<NativeDrawing> sentinel_drawing_;
   std::array<int, 4> sentinel_extent_{};  ///< of it: width, height, samples, whether its background is white
   std::minstd_rand random_;               ///< where sentinels stand

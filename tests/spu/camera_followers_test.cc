@@ -95,11 +95,39 @@ TEST(CameraFollowers, MayTakeTurnsWithTheCamera) {
   }
 }
 
-TEST(CameraFollowers, AreForgottenWhereTheProgramHasOtherUniforms) {
+TEST(CameraFollowers, AreNotWhatWasNotThereBefore) {
   Moving scene;
   for (int image = 0; image < 10; ++image) scene.light_follows(1);
   scene.before.varying_begins = {0};
-  EXPECT_TRUE(scene.light_follows(2));
+  EXPECT_FALSE(scene.light_follows(2));
+}
+
+TEST(CameraFollowers, AreKnownByTheirNamesWhereOthersCome) {
+  CameraFollowers followers;
+  const auto image = [](float eye, float plane, bool also_plane) {
+    MarchInputs inputs;
+    if (also_plane) {
+      inputs.begin_vector("plane", true);
+      inputs.varying.push_back(plane);
+    }
+    inputs.begin_vector("eye", true);
+    inputs.varying.push_back(eye);
+    return inputs;
+  };
+  MarchInputs before;
+  for (int k = 0; k < 10; ++k) {
+    const MarchInputs now = image(float(k), 0, false);
+    EXPECT_TRUE(followers.look(before, now, Camera::moved_on)[0]) << k;
+    before = now;
+  }
+  // A flag lets a plane choose, which has to be right whenever it changes; the eye is trusted as before.
+  for (int k = 10; k < 30; ++k) {
+    const MarchInputs now = image(float(k), float(k), true);
+    const std::vector<bool> follow = followers.look(before, now, Camera::moved_on);
+    EXPECT_FALSE(follow[0]) << k;
+    EXPECT_TRUE(follow[1]) << k;
+    before = now;
+  }
 }
 
 }  // namespace

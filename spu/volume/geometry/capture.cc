@@ -159,6 +159,10 @@ Capture capture_vertices(const GlContext& context, const Run& run, const Program
     capture.offsets.push_back(capture.stride);
     if (input.written) capture.stride += std::size_t(input.components);
   }
+  for (const UnprobedInput& input : stages.unprobed) {
+    capture.unprobed_offsets.push_back(capture.stride);
+    capture.stride += input.floats;
+  }
   capture.data = captured_data(context, run, stages, capture.stride);
   drop_degenerate_triangles(capture.data, capture.stride);
   if (capture.data.empty()) return capture;

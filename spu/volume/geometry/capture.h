@@ -34,6 +34,7 @@ struct Capture {
   std::vector<float> data;  ///< vertex by vertex, `stride` floats each
   std::size_t stride = 0;
   std::vector<std::size_t> offsets;  ///< of each input in a vertex; those that are not written have none
+  std::vector<std::size_t> unprobed_offsets;  ///< likewise of ProgramStages::unprobed
 
   /// Of input `input`, no integer, at vertex `v`.
   float value(std::size_t v, std::size_t input, std::size_t component) const {

@@ -15,10 +15,10 @@
 namespace understudy::spu {
 namespace {
 
-/// Drivers allow at least a quarter of this, and some any size.
+/// OpenGL guarantees a 64th of this; some drivers allow any size.
 constexpr GLint most_block_bytes = 1 << 20;
 /// Elements of a longer array are looked at together.
-constexpr std::size_t most_apart = 16;
+constexpr std::size_t most_apart = 64;
 
 struct Extent {
   int columns = 1;  ///< of a matrix
@@ -28,6 +28,11 @@ struct Extent {
 
 Extent extent_of(GLenum type) {
   switch (type) {
+    case GL_FLOAT:
+    case GL_INT:
+    case GL_UNSIGNED_INT:
+    case GL_BOOL:
+      return {};
     case GL_FLOAT_VEC2:
     case GL_INT_VEC2:
     case GL_UNSIGNED_INT_VEC2:
@@ -69,12 +74,8 @@ Extent extent_of(GLenum type) {
       return {1, 3, 8};
     case GL_DOUBLE_VEC4:
       return {1, 4, 8};
-    case GL_DOUBLE_MAT2:
-    case GL_DOUBLE_MAT3:
-    case GL_DOUBLE_MAT4:
-      return {4, 4, 8};  // of smaller ones what follows, too
     default:
-      return {};
+      return {4, 4, 8};  // the largest; of smaller ones what follows, too
   }
 }
 

@@ -199,6 +199,8 @@ void describe_fragment_stage(const GlContext& context, const ProgramRecord& reco
       if (shape.components == 0 || shape.kind == UniformShape::Kind::matrix || answer[1] > 1) {
         if (stages.trouble.empty())
           stages.trouble = "the fragment shader reads " + input.name + ", of a type that is not probed";
+        stages.unprobed.push_back({std::string(program::variable_of(input.name)),
+                                   std::size_t(shape.components) * std::size_t(std::max(answer[1], 1))});
         continue;
       }
       input.components = shape.components;
@@ -292,15 +294,27 @@ std::string_view name_in_block(const auto& member) {
   return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
 }
 
+/// The vertex stage's output that the fragment stage reads as `read`. Stages match variables by their
+/// locations, members of blocks by the names of block and member, though a block may have an instance name in
+/// one of the stages only, and others by name.
+const program::Output* output_read(const program::StageFacts& vertex, const program::Input& read) {
+  const auto written = std::ranges::find_if(vertex.outputs, [&](const program::Output& output) {
+    if (!read.block.empty()) return output.block == read.block && name_in_block(output) == name_in_block(read);
+    if (read.location >= 0) return output.location == read.location && output.packed_at == read.packed_at;
+    return program::variable_of(output.name) == program::variable_of(read.name);
+  });
+  return written == vertex.outputs.end() ? nullptr : &*written;
+}
+
 /// Reads the texts for what queries do not tell: how inputs are interpolated, and which outputs of the vertex
-/// stage they read. Inputs and outputs that have locations are matched by these, whatever their names. A text
-/// that is not understood leaves all inputs smooth and matched by name: its volume is refused. False where what
-/// is captured of the vertex stage would not be what the fragment stage reads.
-bool read_texts(const GlContext& context, const ProgramRecord& record, ProgramStages& stages) {
+/// stage they read. A text that is not understood leaves all inputs smooth and matched by name: its volume is
+/// refused. False where what is captured of the vertex stage would not be what the fragment stage reads.
+bool read_texts(const GlContext& context, const ProgramRecord& record,
+                const std::optional<program::StageFacts>& vertex, ProgramStages& stages) {
   for (StageInput& input : stages.inputs) input.output = input.name;
+  for (UnprobedInput& input : stages.unprobed) input.output = input.name;
   const auto fragment = facts_of(context, program::Stage::fragment, record.fragment_sources);
   if (!fragment) return true;
-  std::optional<program::StageFacts> vertex;
   for (StageInput& input : stages.inputs) {
     const auto read = std::ranges::find(fragment->inputs, input.name, &program::Input::name);
     if (read == fragment->inputs.end()) continue;
@@ -308,29 +322,30 @@ bool read_texts(const GlContext& context, const ProgramRecord& record, ProgramSt
     input.block = read->block;
     input.place_in_block = read - fragment->inputs.begin();
     if ((read->location < 0 && read->block.empty()) || !record.vertex_shader) continue;
-    if (!vertex) vertex = facts_of(context, program::Stage::vertex, record.vertex_sources);
-    if (!vertex && !read->block.empty()) continue;
     if (!vertex) {
       stages.trouble = "the vertex shader is not understood, and " + input.name + " is read by its location";
       return false;
     }
-    // A block may have an instance name in one of the stages only.
-    const auto written = std::ranges::find_if(vertex->outputs, [&](const program::Output& output) {
-      if (!read->block.empty())
-        return output.block == read->block && name_in_block(output) == name_in_block(*read);
-      return output.location == read->location && output.packed_at == read->packed_at;
-    });
-    if (written == vertex->outputs.end()) continue;
+    const program::Output* const written = output_read(*vertex, *read);
+    if (written == nullptr) continue;
     input.output = written->name;
     if (written->components == input.components) continue;
     stages.trouble = fmt::format("the vertex shader writes {} components of {}, the fragment shader reads {}",
                                  written->components, input.name, input.components);
     return false;
   }
+  for (UnprobedInput& input : stages.unprobed) {
+    const auto read = std::ranges::find_if(fragment->inputs, [&](const program::Input& declared) {
+      return program::variable_of(declared.name) == input.name;
+    });
+    if (read == fragment->inputs.end() || !vertex) continue;
+    if (const program::Output* const written = output_read(*vertex, *read))
+      input.output = std::string(program::variable_of(written->name));
+  }
   return true;
 }
 
-/// What of the vertex stage's outputs depends on one of `sources`, or does not.
+/// Whether the output depends on one of `sources`.
 bool depends_on(const program::Output& output, const std::set<std::uint32_t>& sources) {
   return std::ranges::any_of(output.on,
                              [&](const program::Dependence& on) { return sources.contains(on.source); });
@@ -371,9 +386,8 @@ std::vector<InputComponent> components_reached(const std::optional<program::Stag
 }
 
 /// The observer keeps no uniform that reaches neither the position nor an input.
-void find_behind_inputs(const GlContext& context, const ProgramRecord& record, GLuint application,
-                        ProgramStages& stages) {
-  const auto vertex = facts_of(context, program::Stage::vertex, record.vertex_sources);
+void find_behind_inputs(const GlContext& context, const std::optional<program::StageFacts>& vertex,
+                        GLuint application, ProgramStages& stages) {
   std::vector<BlockMember> members = block_members(context, application);
   for_each_uniform(*context.gl, stages.observer, [&](const std::string& name, GLenum type) {
     const bool in_block = std::ranges::any_of(
@@ -401,25 +415,34 @@ bool is_named(const StageInput& input, const std::string& name) {
 ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application) {
   ProgramStages stages;
   describe_fragment_stage(context, record, stages);
-  if (!read_texts(context, record, stages) || !record.vertex_shader) return stages;
+  const auto vertex = record.vertex_shader ? facts_of(context, program::Stage::vertex, record.vertex_sources)
+                                           : std::optional<program::StageFacts>();
+  if (!read_texts(context, record, vertex, stages) || !record.vertex_shader) return stages;
 
   std::string trouble;
   std::vector<const char*> names;
   for (const StageInput& input : stages.inputs) names.push_back(input.output.c_str());
+  for (const UnprobedInput& input : stages.unprobed) {
+    if (input.floats > 0) names.push_back(input.output.c_str());
+  }
   stages.observer = link_observer(context, record, application, names, trouble);
   if (stages.observer == 0) {
     // A fragment stage linked alone keeps all that it declares; the vertex stage may write only some of it.
     names.clear();
-    for (StageInput& input : stages.inputs) {
-      const GLuint alone = link_observer(context, record, application, {input.output.c_str()}, trouble);
-      input.written = alone != 0;
-      if (input.written) names.push_back(input.output.c_str());
+    const auto is_written = [&](const std::string& output) {
+      const GLuint alone = link_observer(context, record, application, {output.c_str()}, trouble);
       context.gl->DeleteProgram(alone);
+      if (alone != 0) names.push_back(output.c_str());
+      return alone != 0;
+    };
+    for (StageInput& input : stages.inputs) input.written = is_written(input.output);
+    for (UnprobedInput& input : stages.unprobed) {
+      if (input.floats > 0 && !is_written(input.output)) input.floats = 0;
     }
     stages.observer = link_observer(context, record, application, names, trouble);
   }
   if (stages.observer != 0)
-    find_behind_inputs(context, record, application, stages);
+    find_behind_inputs(context, vertex, application, stages);
   else if (stages.trouble.empty())
     stages.trouble = "the vertex shader does not link for capture: " + trouble;
   return stages;

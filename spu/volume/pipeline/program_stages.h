@@ -38,6 +38,13 @@ struct StageUniform {
   GLenum type = GL_FLOAT;
 };
 
+/// A varying that the fragment stage reads, of a type that is not probed: a matrix or an array.
+struct UnprobedInput {
+  std::string name;        ///< without an element
+  std::size_t floats = 0;  ///< 0: it is not captured
+  std::string output{};    ///< as of StageInput
+};
+
 /// One number of an input of the fragment stage.
 struct InputComponent {
   std::string input;
@@ -60,8 +67,9 @@ struct ProgramBlockMember {
 
 /// Programs built from the sources of one link of the application's program. The names live in its context.
 struct ProgramStages {
-  std::vector<StageInput> inputs;      ///< of the fragment stage, as far as they can be captured
-  std::vector<StageUniform> uniforms;  ///< of the fragment stage: the camera's matrices are not among them
+  std::vector<StageInput> inputs;       ///< of the fragment stage, as far as they can be captured
+  std::vector<UnprobedInput> unprobed;  ///< further inputs; captured behind the others
+  std::vector<StageUniform> uniforms;   ///< of the fragment stage: the camera's matrices are not among them
   std::vector<VertexUniform> vertex_uniforms;     ///< those that reach any of `inputs` so
   std::vector<ProgramBlockMember> block_members;  ///< where the vertex stage can be captured
   bool uniform_blocks = false;                    ///< the fragment stage reads uniform buffers

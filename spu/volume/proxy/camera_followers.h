@@ -30,13 +30,16 @@ class CameraFollowers {
  private:
   /// Of one vector.
   struct Moves {
+    std::size_t name = 0;   ///< as of MarchInputs
     int stayed = 0;         ///< the last so many moves of the camera
     int until_trusted = 0;  ///< it must change so many times more before it counts as a follower again
     int returned = 0;       ///< so often it came back to what it was, and the image was right
     bool chose = false;     ///< as of MarchInputs, in the last image
   };
-  std::vector<Moves> vectors_;
-  std::vector<float> earlier_;  ///< what varies, in the image before the last one
+  Moves& moves_of(std::size_t name, bool chooses, bool is_first);
+
+  std::vector<Moves> vectors_;  ///< of all images
+  MarchInputs earlier_;         ///< of the image before the last one
 };
 
 }  // namespace understudy::spu

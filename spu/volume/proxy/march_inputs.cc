@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <span>
 
@@ -39,16 +40,19 @@ std::size_t components_of_type(GLenum type) {
     case GL_INT_VEC2:
     case GL_UNSIGNED_INT_VEC2:
     case GL_BOOL_VEC2:
+    case GL_DOUBLE_VEC2:
       return 2;
     case GL_FLOAT_VEC3:
     case GL_INT_VEC3:
     case GL_UNSIGNED_INT_VEC3:
     case GL_BOOL_VEC3:
+    case GL_DOUBLE_VEC3:
       return 3;
     case GL_FLOAT_VEC4:
     case GL_INT_VEC4:
     case GL_UNSIGNED_INT_VEC4:
     case GL_BOOL_VEC4:
+    case GL_DOUBLE_VEC4:
     case GL_FLOAT_MAT2:
       return 4;
     case GL_FLOAT_MAT2x3:
@@ -124,7 +128,14 @@ bool chooses_colours(const ProgramFindings& says, const std::string& uniform) {
   });
 }
 
-MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, const ProgramFindings& says) {
+void MarchInputs::begin_vector(std::string_view name, bool chooses) {
+  varying_names.push_back(std::hash<std::string_view>()(name));
+  varying_begins.push_back(varying.size());
+  varying_chooses.push_back(chooses);
+}
+
+MarchInputs march_inputs(const MarchContext& measured, const CoordinateSpace& space, const ShareGroup& group,
+                         const ProgramFindings& says) {
   const DispatchTable& gl = *measured.context.gl;
   const Pipeline& pipeline = measured.run.pipeline();
   MarchInputs inputs;
@@ -137,34 +148,30 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
   GLint front = 0;
   gl.GetIntegerv(GL_CULL_FACE_MODE, &culled);
   gl.GetIntegerv(GL_FRONT_FACE, &front);
-  const auto varies = [&](float value) {
-    inputs.varying_begins.push_back(inputs.varying.size());
-    inputs.varying_chooses.push_back(false);
+  const auto varies = [&](std::string_view what, float value) {
+    inputs.begin_vector(what, false);
     inputs.varying.push_back(value);
   };
-  varies(gl.IsEnabled(GL_CULL_FACE) ? float(culled) : 0.0F);
-  varies(float(front));
+  varies("GL_CULL_FACE_MODE", gl.IsEnabled(GL_CULL_FACE) ? float(culled) : 0.0F);
+  varies("GL_FRONT_FACE", float(front));
   for (const int extent : measured.texture.size) inputs.fixed.push_back(float(extent));
   for (const GLint swizzle : measured.texture.swizzle) inputs.fixed.push_back(float(swizzle));
-  if (measured.stages.uniform_blocks) varies(never_equal);
+  if (measured.stages.uniform_blocks) varies("uniform blocks", never_equal);
   const auto record = group.programs().program(pipeline.program);
   inputs.fixed.push_back(record ? float(record->link) : 0.0F);
   for (const StageUniform& uniform : measured.stages.uniforms) {
     if (tells_cuts(uniform.name)) continue;  // measured without
     const std::size_t before = inputs.fixed.size();
-    const std::size_t begin = inputs.varying.size();
-    append_value(measured, uniform, is_scalar(uniform.type) ? inputs.fixed : inputs.varying);
-    if (inputs.varying.size() > begin) {
-      inputs.varying_begins.push_back(begin);
-      inputs.varying_chooses.push_back(chooses_colours(says, uniform.name));
-    }
+    const bool scalar = is_scalar(uniform.type);
+    if (!scalar) inputs.begin_vector(uniform.name, chooses_colours(says, uniform.name));
+    append_value(measured, uniform, scalar ? inputs.fixed : inputs.varying);
     const bool in_use = inputs.fixed.size() > before;
     if (in_use && uniform.type == GL_FLOAT && moves_samples_only(says, uniform.name))
       inputs.steps.push_back(before);
   }
   for (const SampledTexture& other : pipeline.others) {
     if (group.is_rendered_to(other.texture)) {  // the opaque geometry's depth, or a table that is drawn
-      varies(never_equal);
+      varies("a texture that is drawn", never_equal);
       continue;
     }
     if (is_depth_texture(gl, other)) {
@@ -181,7 +188,7 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
     append_lookup(measured.context, other, inputs.fixed);
   }
   inputs.of_fragment_stage = inputs.varying.size();
-  append_other_inputs(measured, says, inputs);
+  append_other_inputs(measured, space, says, inputs);
   return inputs;
 }
 
@@ -214,6 +221,13 @@ bool same_in_fragment_stage(const MarchInputs& before, const MarchInputs& now) {
   };
   return before.fixed == now.fixed && before.depths == now.depths &&
          std::ranges::equal(of_fragment_stage(before), of_fragment_stage(now));
+}
+
+bool same_beside_fragment_stage(const MarchInputs& before, const MarchInputs& now) {
+  const auto beside = [](const MarchInputs& inputs) {
+    return std::span(inputs.varying).subspan(inputs.of_fragment_stage);
+  };
+  return std::ranges::equal(beside(before), beside(now));
 }
 
 bool only_tables_differ(const MarchInputs& before, const MarchInputs& now) {

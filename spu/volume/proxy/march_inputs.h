@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string_view>
 #include <vector>
 
 #include "spu/volume/program_check/program_check.h"
@@ -24,17 +25,22 @@ struct MarchInputs {
   std::vector<float> varying;
   std::size_t of_fragment_stage = 0;  ///< so many numbers of `varying`
   bool unreadable = false;  ///< something that it depends on cannot be told: it may be another every time
-  /// Where each vector, matrix or number of `varying` begins.
+  /// Where each vector, matrix or number of `varying` begins, and what tells its name from others.
   std::vector<std::size_t> varying_begins;
+  std::vector<std::size_t> varying_names;
   /// Likewise: whether it decides, by a branch, what samples look like or whether they are left out.
   std::vector<bool> varying_chooses;
   /// Depth textures and their contents, instead of which probes show the far plane: opaque geometry's may be
   /// copied in every frame.
   std::vector<float> depths;
+
+  /// What is appended to `varying` from now on is one vector of that name.
+  void begin_vector(std::string_view name, bool chooses);
 };
 
-/// `says` has a finding about ray casters.
-MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, const ProgramFindings& says);
+/// `says` has a finding about ray casters; `space` is where samples lie.
+MarchInputs march_inputs(const MarchContext& measured, const CoordinateSpace& space, const ShareGroup& group,
+                         const ProgramFindings& says);
 
 /// What a uniform holds that the program still has.
 void append_value(const MarchContext& measured, const StageUniform& uniform, std::vector<float>& values);
@@ -49,6 +55,9 @@ std::vector<float> discard_inputs(const MarchContext& measured, const ShareGroup
 
 /// Whether the fragment stage has the same in all that it has itself.
 bool same_in_fragment_stage(const MarchInputs& before, const MarchInputs& now);
+
+/// Whether all is the same that other_inputs.h adds.
+bool same_beside_fragment_stage(const MarchInputs& before, const MarchInputs& now);
 
 /// Whether nothing of `fixed` differs but the tables.
 bool only_tables_differ(const MarchInputs& before, const MarchInputs& now);

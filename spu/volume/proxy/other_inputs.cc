@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 
 #include "spu/volume/context/context.h"
@@ -24,63 +26,61 @@ enum class Role : std::uint8_t {
 
 using InfluenceList = std::vector<program::Influence>;
 
-/// Of one component of an input of the fragment stage.
-class RoleOf {
- public:
-  RoleOf(const ProgramFindings& says, const StageInput& input, int component)
-      : facts_(says.facts), input_(input), component_(component) {}
-
-  bool is_meant(const program::Influence& influence) const {
-    const program::Source& source = facts_.sources[influence.source];
-    return source.kind == program::SourceKind::varying && source.component == component_ &&
-           is_named(input_, source.name);
+/// Of the varying numbers that `is_meant` tells.
+Role role_of(const program::RayFinding& ray, const std::function<bool(const program::Influence&)>& is_meant) {
+  const auto places = [&](const program::Influence& influence) {
+    return influence.flow == program::Flow::data && is_meant(influence);
+  };
+  if (std::ranges::any_of(ray.coordinates, places)) return Role::places;
+  for (const InfluenceList* list : {&ray.branches, &ray.discards, &ray.loop_ends, &ray.coordinates}) {
+    if (std::ranges::any_of(*list, is_meant)) return Role::decides;
   }
-
-  Role in(const program::RayFinding& ray) const {
-    const auto meant = [this](const program::Influence& influence) { return is_meant(influence); };
-    const auto places = [&](const program::Influence& influence) {
-      return influence.flow == program::Flow::data && is_meant(influence);
-    };
-    if (std::ranges::any_of(ray.coordinates, places)) return Role::places;
-    for (const InfluenceList* list : {&ray.branches, &ray.discards, &ray.loop_ends, &ray.coordinates}) {
-      if (std::ranges::any_of(*list, meant)) return Role::decides;
-    }
-    return std::ranges::any_of(ray.data, meant) ? Role::colours : Role::none;
-  }
-
- private:
-  const program::StageFacts& facts_;
-  const StageInput& input_;
-  int component_;
-};
+  return std::ranges::any_of(ray.data, is_meant) ? Role::colours : Role::none;
+}
 
 /// What one image depends on, so far as it is seen here.
 class OtherInputs {
  public:
-  OtherInputs(const MarchContext& measured, const ProgramFindings& says, MarchInputs& inputs)
-      : measured_(measured), says_(says), inputs_(inputs) {
+  OtherInputs(const MarchContext& measured, const CoordinateSpace& space, const ProgramFindings& says,
+              MarchInputs& inputs)
+      : measured_(measured), space_(space), says_(says), inputs_(inputs) {
     for (const StageInput& input : measured.stages.inputs) {
       std::array<Role, 4>& roles = roles_.emplace_back();
       for (int c = 0; c < std::min(input.components, 4); ++c)
-        roles[std::size_t(c)] = RoleOf(says, input, c).in(*says.ray);
+        roles[std::size_t(c)] = role_of_component(input, c);
+    }
+    for (const program::UniformUse& use : says.ray->uniforms) {
+      const program::Source& source = says.facts.sources[use.source];
+      if (source.kind == program::SourceKind::uniform_block) members_read_.insert(source.name);
     }
   }
 
   void append() {
     for (const VertexUniform& vertex : measured_.stages.vertex_uniforms) {
-      begin_vector(decide(vertex.reaches));
+      inputs_.begin_vector("vertex stage: " + vertex.uniform.name, decide(vertex.reaches));
       append_value(measured_, vertex.uniform, inputs_.varying);
     }
     for (const ProgramBlockMember& member : measured_.stages.block_members) append(member);
-    inputs_.unreadable |= says_more_than_is_listed();
+    inputs_.unreadable |= names_more_than_is_listed();
     if (measured_.seen == nullptr) return;
     for (std::size_t i = 0; i < roles_.size() && i < measured_.seen->offsets.size(); ++i) append_captured(i);
+    for (std::size_t i = 0; i < measured_.seen->unprobed_offsets.size(); ++i) append_unprobed(i);
   }
 
  private:
-  void begin_vector(bool chooses) {
-    inputs_.varying_begins.push_back(inputs_.varying.size());
-    inputs_.varying_chooses.push_back(chooses);
+  Role role_of_component(const StageInput& input, int component) const {
+    return role_of(*says_.ray, [&](const program::Influence& influence) {
+      const program::Source& source = says_.facts.sources[influence.source];
+      return source.kind == program::SourceKind::varying && source.component == component &&
+             is_named(input, source.name);
+    });
+  }
+
+  Role role_of_unprobed(const UnprobedInput& input) const {
+    return role_of(*says_.ray, [&](const program::Influence& influence) {
+      const program::Source& source = says_.facts.sources[influence.source];
+      return source.kind == program::SourceKind::varying && program::variable_of(source.name) == input.name;
+    });
   }
 
   bool decide(std::span<const InputComponent> reached) const {
@@ -93,17 +93,15 @@ class OtherInputs {
   }
 
   bool is_read_by_fragments(const std::string& member) const {
-    return std::ranges::any_of(says_.ray->uniforms, [&](const program::UniformUse& use) {
-      const program::Source& source = says_.facts.sources[use.source];
-      return source.kind == program::SourceKind::uniform_block &&
-             program::may_be_same_element(source.name, member);
-    });
+    return std::ranges::any_of(
+        members_read_, [&](const std::string& read) { return program::may_be_same_element(read, member); });
   }
 
   void append(const ProgramBlockMember& described) {
     const BlockMember& member = described.member;
     if (described.reaches.empty() && !is_read_by_fragments(member.name)) return;
-    begin_vector(chooses_colours(says_, member.name) || decide(described.reaches));
+    inputs_.begin_vector("buffer: " + member.name,
+                         chooses_colours(says_, member.name) || decide(described.reaches));
     const auto& contents = contents_of(member.block);
     inputs_.unreadable |= !contents;
     const std::span<const std::byte> block = contents ? std::span(*contents) : std::span<const std::byte>();
@@ -118,51 +116,66 @@ class OtherInputs {
   }
 
   /// Of an array of blocks, OpenGL lists "Clip.plane" alone, and the text names "Clip[1].plane".
-  bool says_more_than_is_listed() const {
-    return std::ranges::any_of(says_.ray->uniforms, [&](const program::UniformUse& use) {
-      const program::Source& source = says_.facts.sources[use.source];
-      const auto is_listed = [&](const ProgramBlockMember& listed) {
-        return program::may_be_same_element(source.name, listed.member.name);
-      };
-      return source.kind == program::SourceKind::uniform_block &&
-             std::ranges::none_of(measured_.stages.block_members, is_listed);
+  bool names_more_than_is_listed() const {
+    return std::ranges::any_of(members_read_, [&](const std::string& read) {
+      return std::ranges::none_of(measured_.stages.block_members, [&](const ProgramBlockMember& listed) {
+        return program::may_be_same_element(read, listed.member.name);
+      });
     });
   }
 
-  /// Bounds over the draw, and what tells the values at its vertices, however many there are.
+  /// The place in the volume, and the eye where the ray's direction is handed on: the box is measured with
+  /// them.
+  bool is_place(const StageInput& input, std::size_t component) const {
+    return component < 3 && (input.name == space_.input || input.name == space_.origin);
+  }
+
+  /// What tells the values at the draw's vertices, however many there are.
   void append_captured(std::size_t input) {
     const StageInput& described = measured_.stages.inputs[input];
-    const std::array<Role, 4>& roles = roles_[input];
-    const auto is_looked_at = [&](std::size_t c) {
-      return roles[c] == Role::decides || roles[c] == Role::colours;
-    };
-    const bool any = is_looked_at(0) || is_looked_at(1) || is_looked_at(2) || is_looked_at(3);
-    if (!described.written || !any) return;
-    begin_vector(std::ranges::find(roles, Role::decides) != roles.end());
+    if (!described.written) return;
     const Capture& capture = *measured_.seen;
     std::vector<float> values;
-    for (std::size_t c = 0; c < roles.size(); ++c) {
-      if (!is_looked_at(c)) continue;
-      inputs_.varying.insert(inputs_.varying.end(),
-                             {capture.range.low[input][c], capture.range.high[input][c]});
-      const std::size_t vertices =
-          capture.stride == 0 || described.integer ? 0 : capture.data.size() / capture.stride;
-      for (std::size_t v = 0; v < vertices; ++v) values.push_back(capture.value(v, input, c));
+    for (std::size_t c = 0; c < std::size_t(described.components); ++c) {
+      if (is_place(described, c)) continue;
+      for (std::size_t at = capture.offsets[input] + c; at < capture.data.size(); at += capture.stride)
+        values.push_back(capture.data[at]);
     }
+    const std::array<Role, 4>& roles = roles_[input];
+    inputs_.begin_vector("varying: " + described.name, std::ranges::find(roles, Role::decides) != roles.end());
+    append_digest(std::as_bytes(std::span(values)), inputs_.varying);
+  }
+
+  void append_unprobed(std::size_t input) {
+    const UnprobedInput& described = measured_.stages.unprobed[input];
+    const Role role = role_of_unprobed(described);
+    if (described.floats == 0) {
+      inputs_.unreadable |= role != Role::none;
+      return;
+    }
+    const Capture& capture = *measured_.seen;
+    std::vector<float> values;
+    for (std::size_t at = capture.unprobed_offsets[input]; at < capture.data.size(); at += capture.stride)
+      values.insert(values.end(), capture.data.begin() + std::ptrdiff_t(at),
+                    capture.data.begin() + std::ptrdiff_t(at + described.floats));
+    inputs_.begin_vector("varying: " + described.name, role == Role::decides);
     append_digest(std::as_bytes(std::span(values)), inputs_.varying);
   }
 
   const MarchContext& measured_;
+  const CoordinateSpace& space_;
   const ProgramFindings& says_;
   MarchInputs& inputs_;
   std::vector<std::array<Role, 4>> roles_;  ///< of the fragment stage's inputs
+  std::set<std::string> members_read_;      ///< of uniform blocks, by the fragment stage
   std::map<GLuint, std::optional<std::vector<std::byte>>> contents_of_block_;
 };
 
 }  // namespace
 
-void append_other_inputs(const MarchContext& measured, const ProgramFindings& says, MarchInputs& inputs) {
-  OtherInputs(measured, says, inputs).append();
+void append_other_inputs(const MarchContext& measured, const CoordinateSpace& space,
+                         const ProgramFindings& says, MarchInputs& inputs) {
+  OtherInputs(measured, space, says, inputs).append();
 }
 
 }  // namespace understudy::spu

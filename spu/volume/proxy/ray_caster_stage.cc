@@ -354,7 +354,9 @@ std::string_view RayCasterStage::why_measured(const Draw& draw, const ProxyBox& 
                                               bool turned) const {
   const KnownMarch& known = draw.known.march;
   if (!known.march) return "the first of the volume";
-  const bool same = same_in_fragment_stage(known.inputs, inputs);
+  // While the camera moves, most of what vertices hand on moves with it.
+  const bool same = same_in_fragment_stage(known.inputs, inputs) &&
+                    (turned || same_beside_fragment_stage(known.inputs, inputs));
   if (!same) wait_for_earlier_drawing();
   const bool holds = same || (inputs.fixed == known.inputs.fixed &&
                               still_marches(draw.measured(), *known.march, box,
@@ -462,7 +464,7 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
                     draw.neighbours ? gradient_ghost_layer : 0},
                    known.sent, known.counters, service);
 
-  MarchInputs inputs = march_inputs(draw.measured(), group_, says);
+  MarchInputs inputs = march_inputs(draw.measured(), draw.spaces.front(), group_, says);
   const bool turned = known.march.camera != box.camera.texture_to_clip;
   using Camera = CameraFollowers::Camera;
   const Camera camera = !turned                                                    ? Camera::stayed

@@ -85,7 +85,7 @@ void VerificationSchedule::whole_was_right(bool anything_visible, double native_
   if (!anything_visible) return;
   if (--to_prove_ <= 0) {
     right_ = true;
-    lost_in_a_row_ = 0;
+    lost_in_a_row_ = strict_in_a_row_ = 0;
   }
   right_footprint_ = std::max(right_footprint_, footprint_);
   for (const auto& [index, decides] : now_changed_) {
@@ -117,8 +117,12 @@ void VerificationSchedule::lost(Loss loss) {
   to_prove_ = right_after_loss;
   right_footprint_ = 0;
   changing_.clear();
+  if (loss == Loss::strictness) {
+    ++strict_in_a_row_;
+    return;
+  }
   ++lost_in_a_row_;
-  if (loss == Loss::beyond_bound) ++lost_ever_;
+  ++lost_ever_;
 }
 
 }  // namespace understudy::spu

@@ -52,7 +52,7 @@ class VerificationSchedule {
   };
   using Inputs = std::vector<Input>;
   /// `strictness`: the image would have been right to the usual bound. It is no proof that the volume is not
-  /// understood, and does not count among all losses.
+  /// understood: the next attempt waits longer, and the volume is not handed back.
   enum class Loss : std::uint8_t { beyond_bound, strictness };
 
   /// The next image is about to be shown. `footprint`: pixels that it covers; `density`: of the samples on
@@ -83,7 +83,7 @@ class VerificationSchedule {
   bool gives_up() const {
     return lost_in_a_row_ >= max_lost_comparisons || lost_ever_ >= max_lost_comparisons_ever;
   }
-  int lost_in_a_row() const { return lost_in_a_row_; }
+  int lost_in_a_row() const { return lost_in_a_row_ + strict_in_a_row_; }
   /// What the application's own drawing of the image that is begun would take, as far as time goes by the
   /// samples of a volume; empty: not known yet.
   std::optional<double> native_ms() const;
@@ -113,6 +113,7 @@ class VerificationSchedule {
   bool dense_ = false;
   int to_prove_ = 1;  ///< so many images that show something must be right yet
   int lost_in_a_row_ = 0;
+  int strict_in_a_row_ = 0;
   int lost_ever_ = 0;
   std::optional<double> measured_ms_;  ///< of the application's own drawing
   double measured_samples_ = 0;

@@ -128,7 +128,8 @@ bool chooses_colours(const ProgramFindings& says, const std::string& uniform) {
   });
 }
 
-void MarchInputs::begin_vector(std::string_view name, bool chooses) {
+void MarchInputs::begin_vector(std::string_view name, bool chooses, bool handed_constant) {
+  varying_is_handed_constant.push_back(handed_constant);
   varying_names.push_back(std::hash<std::string_view>()(name));
   varying_begins.push_back(varying.size());
   varying_chooses.push_back(chooses);
@@ -223,11 +224,16 @@ bool same_in_fragment_stage(const MarchInputs& before, const MarchInputs& now) {
          std::ranges::equal(of_fragment_stage(before), of_fragment_stage(now));
 }
 
-bool same_beside_fragment_stage(const MarchInputs& before, const MarchInputs& now) {
-  const auto beside = [](const MarchInputs& inputs) {
-    return std::span(inputs.varying).subspan(inputs.of_fragment_stage);
-  };
-  return std::ranges::equal(beside(before), beside(now));
+bool changed_beside_fragment_stage(const MarchInputs& before, const MarchInputs& now,
+                                   const std::vector<bool>& follows) {
+  if (before.varying_names != now.varying_names || before.varying.size() != now.varying.size()) return true;
+  std::size_t vector = 0;
+  for (std::size_t i = now.of_fragment_stage; i < now.varying.size(); ++i) {
+    while (vector + 1 < now.varying_begins.size() && now.varying_begins[vector + 1] <= i) ++vector;
+    const bool same = before.varying[i] == now.varying[i];
+    if (!same && (!follows[i] || now.varying_is_handed_constant[vector])) return true;
+  }
+  return false;
 }
 
 bool only_tables_differ(const MarchInputs& before, const MarchInputs& now) {

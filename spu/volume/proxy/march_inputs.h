@@ -28,6 +28,8 @@ struct MarchInputs {
   /// Where each vector, matrix or number of `varying` begins, and what tells its name from others.
   std::vector<std::size_t> varying_begins;
   std::vector<std::size_t> varying_names;
+  /// Likewise: whether vertices hand it on, one value in all of the draw, so that it may be a step.
+  std::vector<bool> varying_is_handed_constant;
   /// Likewise: whether it decides, by a branch, what samples look like or whether they are left out.
   std::vector<bool> varying_chooses;
   /// Depth textures and their contents, instead of which probes show the far plane: opaque geometry's may be
@@ -35,7 +37,7 @@ struct MarchInputs {
   std::vector<float> depths;
 
   /// What is appended to `varying` from now on is one vector of that name.
-  void begin_vector(std::string_view name, bool chooses);
+  void begin_vector(std::string_view name, bool chooses, bool handed_constant = false);
 };
 
 /// `says` has a finding about ray casters; `space` is where samples lie.
@@ -56,8 +58,10 @@ std::vector<float> discard_inputs(const MarchContext& measured, const ShareGroup
 /// Whether the fragment stage has the same in all that it has itself.
 bool same_in_fragment_stage(const MarchInputs& before, const MarchInputs& now);
 
-/// Whether all is the same that other_inputs.h adds.
-bool same_beside_fragment_stage(const MarchInputs& before, const MarchInputs& now);
+/// Whether something of what other_inputs.h adds has changed that does not move with the camera, as `follows`
+/// tells number by number, or that may be a step.
+bool changed_beside_fragment_stage(const MarchInputs& before, const MarchInputs& now,
+                                   const std::vector<bool>& follows);
 
 /// Whether nothing of `fixed` differs but the tables.
 bool only_tables_differ(const MarchInputs& before, const MarchInputs& now);

@@ -142,7 +142,9 @@ class OtherInputs {
         values.push_back(capture.data[at]);
     }
     const std::array<Role, 4>& roles = roles_[input];
-    inputs_.begin_vector("varying: " + described.name, std::ranges::find(roles, Role::decides) != roles.end());
+    const bool constant = capture.range.low[input] == capture.range.high[input];
+    inputs_.begin_vector("varying: " + described.name, std::ranges::find(roles, Role::decides) != roles.end(),
+                         constant && described.name != space_.origin);
     append_digest(std::as_bytes(std::span(values)), inputs_.varying);
   }
 

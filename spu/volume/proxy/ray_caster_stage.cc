@@ -351,16 +351,16 @@ void RayCasterStage::wait_for_earlier_drawing() const {
 }
 
 std::string_view RayCasterStage::why_measured(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
-                                              bool turned) const {
+                                              const std::vector<bool>& follows, bool turned) const {
   const KnownMarch& known = draw.known.march;
   if (!known.march) return "the first of the volume";
-  // While the camera moves, most of what vertices hand on moves with it.
-  const bool same = same_in_fragment_stage(known.inputs, inputs) &&
-                    (turned || same_beside_fragment_stage(known.inputs, inputs));
+  const bool changed_alone = changed_beside_fragment_stage(known.inputs, inputs, follows);
+  const bool same = same_in_fragment_stage(known.inputs, inputs) && !changed_alone;
   if (!same) wait_for_earlier_drawing();
-  const bool holds = same || (inputs.fixed == known.inputs.fixed &&
-                              still_marches(draw.measured(), *known.march, box,
-                                            rays_looked_at(*known.march, turned, account_.frames())));
+  const bool holds =
+      same || (inputs.fixed == known.inputs.fixed &&
+               still_marches(draw.measured(), *known.march, box,
+                             rays_looked_at(*known.march, turned && !changed_alone, account_.frames())));
   if (!holds) return "tables, uniforms or state that colours depend on changed";
   return session_.disabled_optimizations(Optimization::known_colours) ? "asked to" : "";
 }
@@ -477,11 +477,11 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
     known.march.march.reset();
     known.march.measured.clear();
   }
-  const std::string_view why = why_measured(draw, box, inputs, turned);
+  const std::vector<bool> follows = known.march.followers.look(known.march.inputs, inputs, camera);
+  const std::string_view why = why_measured(draw, box, inputs, follows, turned);
   classifier_.count_probe(why);
   if (!why.empty()) box = measure(draw, box, inputs, service);
-  VerificationSchedule::Inputs depends_on =
-      inputs_of(inputs, *known.march.march, known.march.followers.look(known.march.inputs, inputs, camera));
+  VerificationSchedule::Inputs depends_on = inputs_of(inputs, *known.march.march, follows);
   known.march.inputs = std::move(inputs);
   if (const auto& background = known.march.march->background) {
     if (!hides_what_was_there(pipeline, background->alpha))

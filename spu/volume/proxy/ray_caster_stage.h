@@ -75,7 +75,7 @@ class RayCasterStage {
   void follow_inside(Draw& draw, const ProxyBox& box, const MarchInputs& inputs);
   void wait_for_earlier_drawing() const;
   std::string_view why_measured(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
-                                bool turned) const;
+                                const std::vector<bool>& follows, bool turned) const;
   /// A march that was measured before the last one, where a viewer takes turns between a few, and holds again;
   /// it becomes the last one measured.
   std::optional<March> measured_before(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs) const;

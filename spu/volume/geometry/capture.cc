@@ -161,7 +161,7 @@ Capture capture_vertices(const GlContext& context, const Run& run, const Program
   }
   for (const UnprobedInput& input : stages.unprobed) {
     capture.unprobed_offsets.push_back(capture.stride);
-    capture.stride += input.floats;
+    capture.stride += input.floats();
   }
   capture.data = captured_data(context, run, stages, capture.stride);
   drop_degenerate_triangles(capture.data, capture.stride);

@@ -199,8 +199,10 @@ void describe_fragment_stage(const GlContext& context, const ProgramRecord& reco
       if (shape.components == 0 || shape.kind == UniformShape::Kind::matrix || answer[1] > 1) {
         if (stages.trouble.empty())
           stages.trouble = "the fragment shader reads " + input.name + ", of a type that is not probed";
-        stages.unprobed.push_back({std::string(program::variable_of(input.name)),
-                                   std::size_t(shape.components) * std::size_t(std::max(answer[1], 1))});
+        stages.unprobed.push_back({.name = std::string(program::variable_of(input.name)),
+                                   .components = components_of_type(input.type),
+                                   .elements = std::size_t(std::max(answer[1], 1)),
+                                   .array = answer[1] > 1 || input.name.ends_with("[0]")});
         continue;
       }
       input.components = shape.components;
@@ -382,6 +384,15 @@ std::vector<InputComponent> components_reached(const std::optional<program::Stag
         reached.push_back({input.name, output.component});
     }
   }
+  for (const UnprobedInput& input : stages.unprobed) {
+    if (!vertex) reached.push_back({input.name, 0});
+    for (std::size_t i = 0; vertex && i < vertex->outputs.size(); ++i) {
+      const program::Output& output = vertex->outputs[i];
+      const std::size_t variable = program::variable_of(output.name).size();
+      if (output.name.substr(0, variable) == input.output && depends_on(output, sources))
+        reached.push_back({input.name + output.name.substr(variable), output.component});
+    }
+  }
   return reached;
 }
 
@@ -406,6 +417,45 @@ void find_behind_inputs(const GlContext& context, const std::optional<program::S
 
 }  // namespace
 
+std::size_t components_of_type(GLenum type) {
+  switch (type) {
+    case GL_FLOAT_VEC2:
+    case GL_INT_VEC2:
+    case GL_UNSIGNED_INT_VEC2:
+    case GL_BOOL_VEC2:
+    case GL_DOUBLE_VEC2:
+      return 2;
+    case GL_FLOAT_VEC3:
+    case GL_INT_VEC3:
+    case GL_UNSIGNED_INT_VEC3:
+    case GL_BOOL_VEC3:
+    case GL_DOUBLE_VEC3:
+      return 3;
+    case GL_FLOAT_VEC4:
+    case GL_INT_VEC4:
+    case GL_UNSIGNED_INT_VEC4:
+    case GL_BOOL_VEC4:
+    case GL_DOUBLE_VEC4:
+    case GL_FLOAT_MAT2:
+      return 4;
+    case GL_FLOAT_MAT2x3:
+    case GL_FLOAT_MAT3x2:
+      return 6;
+    case GL_FLOAT_MAT2x4:
+    case GL_FLOAT_MAT4x2:
+      return 8;
+    case GL_FLOAT_MAT3:
+      return 9;
+    case GL_FLOAT_MAT3x4:
+    case GL_FLOAT_MAT4x3:
+      return 12;
+    case GL_FLOAT_MAT4:
+      return 16;
+    default:
+      return 1;
+  }
+}
+
 bool is_named(const StageInput& input, const std::string& name) {
   return program::may_be_same_element(input.name, name) ||
          (name == "gl_Color" && input.name == "gl_FrontColor") ||
@@ -422,9 +472,7 @@ ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, 
   std::string trouble;
   std::vector<const char*> names;
   for (const StageInput& input : stages.inputs) names.push_back(input.output.c_str());
-  for (const UnprobedInput& input : stages.unprobed) {
-    if (input.floats > 0) names.push_back(input.output.c_str());
-  }
+  for (const UnprobedInput& input : stages.unprobed) names.push_back(input.output.c_str());
   stages.observer = link_observer(context, record, application, names, trouble);
   if (stages.observer == 0) {
     // A fragment stage linked alone keeps all that it declares; the vertex stage may write only some of it.
@@ -436,10 +484,14 @@ ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, 
       return alone != 0;
     };
     for (StageInput& input : stages.inputs) input.written = is_written(input.output);
-    for (UnprobedInput& input : stages.unprobed) {
-      if (input.floats > 0 && !is_written(input.output)) input.floats = 0;
-    }
+    const std::vector<const char*> probed = names;
+    for (UnprobedInput& input : stages.unprobed) input.written = is_written(input.output);
     stages.observer = link_observer(context, record, application, names, trouble);
+    // Together they may be more than feedback takes.
+    if (stages.observer == 0 && names.size() > probed.size()) {
+      for (UnprobedInput& input : stages.unprobed) input.captured = false;
+      stages.observer = link_observer(context, record, application, probed, trouble);
+    }
   }
   if (stages.observer != 0)
     find_behind_inputs(context, vertex, application, stages);

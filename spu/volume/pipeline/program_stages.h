@@ -40,14 +40,26 @@ struct StageUniform {
 
 /// A varying that the fragment stage reads, of a type that is not probed: a matrix or an array.
 struct UnprobedInput {
-  std::string name;        ///< without an element
-  std::size_t floats = 0;  ///< 0: it is not captured
-  std::string output{};    ///< as of StageInput
+  std::string name;            ///< without an element
+  std::size_t components = 1;  ///< of one element
+  std::size_t elements = 1;
+  bool array = false;
+  std::string output{};  ///< as of StageInput
+  bool written = true;   ///< likewise
+  bool captured = true;  ///< false: of what is written, nothing is known
+
+  std::size_t floats() const { return written && captured ? components * elements : 0; }
+  std::string element(std::size_t index) const {
+    return array ? name + "[" + std::to_string(index) + "]" : name;
+  }
 };
+
+/// How many numbers a value of this type is; 1 for types that are not known.
+std::size_t components_of_type(GLenum type);
 
 /// One number of an input of the fragment stage.
 struct InputComponent {
-  std::string input;
+  std::string input;  ///< with the element, of an array
   int component = 0;
 };
 
@@ -73,8 +85,8 @@ struct ProgramStages {
   std::vector<VertexUniform> vertex_uniforms;     ///< those that reach any of `inputs` so
   std::vector<ProgramBlockMember> block_members;  ///< where the vertex stage can be captured
   bool uniform_blocks = false;                    ///< the fragment stage reads uniform buffers
-  GLuint observer = 0;  ///< vertex stage; captures gl_Position, then every input that is written, interleaved
-                        ///< as floats; 0: none
+  GLuint observer = 0;  ///< vertex stage; captures gl_Position, then every input that is written, then those
+                        ///< of `unprobed`, interleaved as floats; 0: none
   std::string trouble;  ///< why the fragment stage cannot be shown chosen samples; empty: it can
 };
 

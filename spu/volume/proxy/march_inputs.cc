@@ -34,45 +34,6 @@ bool is_scalar(GLenum type) {
   }
 }
 
-std::size_t components_of_type(GLenum type) {
-  switch (type) {
-    case GL_FLOAT_VEC2:
-    case GL_INT_VEC2:
-    case GL_UNSIGNED_INT_VEC2:
-    case GL_BOOL_VEC2:
-    case GL_DOUBLE_VEC2:
-      return 2;
-    case GL_FLOAT_VEC3:
-    case GL_INT_VEC3:
-    case GL_UNSIGNED_INT_VEC3:
-    case GL_BOOL_VEC3:
-    case GL_DOUBLE_VEC3:
-      return 3;
-    case GL_FLOAT_VEC4:
-    case GL_INT_VEC4:
-    case GL_UNSIGNED_INT_VEC4:
-    case GL_BOOL_VEC4:
-    case GL_DOUBLE_VEC4:
-    case GL_FLOAT_MAT2:
-      return 4;
-    case GL_FLOAT_MAT2x3:
-    case GL_FLOAT_MAT3x2:
-      return 6;
-    case GL_FLOAT_MAT2x4:
-    case GL_FLOAT_MAT4x2:
-      return 8;
-    case GL_FLOAT_MAT3:
-      return 9;
-    case GL_FLOAT_MAT3x4:
-    case GL_FLOAT_MAT4x3:
-      return 12;
-    case GL_FLOAT_MAT4:
-      return 16;
-    default:
-      return 1;
-  }
-}
-
 /// How a texture of 1 or 2 dimensions is looked up between texels and beyond its ends.
 void append_lookup(const GlContext& context, const SampledTexture& texture, std::vector<float>& values) {
   const DispatchTable& gl = *context.gl;
@@ -128,8 +89,8 @@ bool chooses_colours(const ProgramFindings& says, const std::string& uniform) {
   });
 }
 
-void MarchInputs::begin_vector(std::string_view name, bool chooses, bool handed_constant) {
-  varying_is_handed_constant.push_back(handed_constant);
+void MarchInputs::begin_vector(std::string_view name, bool chooses, bool may_be_step) {
+  varying_may_be_step.push_back(may_be_step);
   varying_names.push_back(std::hash<std::string_view>()(name));
   varying_begins.push_back(varying.size());
   varying_chooses.push_back(chooses);
@@ -224,16 +185,19 @@ bool same_in_fragment_stage(const MarchInputs& before, const MarchInputs& now) {
          std::ranges::equal(of_fragment_stage(before), of_fragment_stage(now));
 }
 
-bool changed_beside_fragment_stage(const MarchInputs& before, const MarchInputs& now,
-                                   const std::vector<bool>& follows) {
-  if (before.varying_names != now.varying_names || before.varying.size() != now.varying.size()) return true;
+BesideChange change_beside_fragment_stage(const MarchInputs& before, const MarchInputs& now,
+                                          const std::vector<bool>& follows) {
+  if (before.varying_names != now.varying_names || before.varying.size() != now.varying.size())
+    return BesideChange::alone;
+  BesideChange change = BesideChange::none;
   std::size_t vector = 0;
   for (std::size_t i = now.of_fragment_stage; i < now.varying.size(); ++i) {
     while (vector + 1 < now.varying_begins.size() && now.varying_begins[vector + 1] <= i) ++vector;
-    const bool same = before.varying[i] == now.varying[i];
-    if (!same && (!follows[i] || now.varying_is_handed_constant[vector])) return true;
+    if (before.varying[i] == now.varying[i]) continue;
+    if (!follows[i]) return BesideChange::alone;
+    if (now.varying_may_be_step[vector]) change = BesideChange::with_camera;
   }
-  return false;
+  return change;
 }
 
 bool only_tables_differ(const MarchInputs& before, const MarchInputs& now) {

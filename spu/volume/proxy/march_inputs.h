@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -28,8 +29,8 @@ struct MarchInputs {
   /// Where each vector, matrix or number of `varying` begins, and what tells its name from others.
   std::vector<std::size_t> varying_begins;
   std::vector<std::size_t> varying_names;
-  /// Likewise: whether vertices hand it on, one value in all of the draw, so that it may be a step.
-  std::vector<bool> varying_is_handed_constant;
+  /// Likewise: whether vertices hand it on, one number in all of the draw.
+  std::vector<bool> varying_may_be_step;
   /// Likewise: whether it decides, by a branch, what samples look like or whether they are left out.
   std::vector<bool> varying_chooses;
   /// Depth textures and their contents, instead of which probes show the far plane: opaque geometry's may be
@@ -37,7 +38,7 @@ struct MarchInputs {
   std::vector<float> depths;
 
   /// What is appended to `varying` from now on is one vector of that name.
-  void begin_vector(std::string_view name, bool chooses, bool handed_constant = false);
+  void begin_vector(std::string_view name, bool chooses, bool may_be_step = false);
 };
 
 /// `says` has a finding about ray casters; `space` is where samples lie.
@@ -58,10 +59,16 @@ std::vector<float> discard_inputs(const MarchContext& measured, const ShareGroup
 /// Whether the fragment stage has the same in all that it has itself.
 bool same_in_fragment_stage(const MarchInputs& before, const MarchInputs& now);
 
-/// Whether something of what other_inputs.h adds has changed that does not move with the camera, as `follows`
-/// tells number by number, or that may be a step.
-bool changed_beside_fragment_stage(const MarchInputs& before, const MarchInputs& now,
-                                   const std::vector<bool>& follows);
+/// How what other_inputs.h adds has changed, so far as rays may show it.
+enum class BesideChange : std::uint8_t {
+  none,
+  with_camera,  ///< a number that may be a step
+  alone,        ///< something that does not move with the camera
+};
+
+/// `follows` tells, number by number, what moves with the camera.
+BesideChange change_beside_fragment_stage(const MarchInputs& before, const MarchInputs& now,
+                                          const std::vector<bool>& follows);
 
 /// Whether nothing of `fixed` differs but the tables.
 bool only_tables_differ(const MarchInputs& before, const MarchInputs& now);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/proxy/other_inputs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -76,10 +78,12 @@ class OtherInputs {
     });
   }
 
-  Role role_of_unprobed(const UnprobedInput& input) const {
+  /// Of an input that is not probed.
+  Role role_of_element(const std::string& name, int component) const {
     return role_of(*says_.ray, [&](const program::Influence& influence) {
       const program::Source& source = says_.facts.sources[influence.source];
-      return source.kind == program::SourceKind::varying && program::variable_of(source.name) == input.name;
+      return source.kind == program::SourceKind::varying && source.component == component &&
+             program::may_be_same_element(source.name, name);
     });
   }
 
@@ -87,7 +91,8 @@ class OtherInputs {
     return std::ranges::any_of(reached, [&](const InputComponent& one) {
       const std::vector<StageInput>& inputs = measured_.stages.inputs;
       const auto input = std::ranges::find(inputs, one.input, &StageInput::name);
-      return input != inputs.end() && one.component < 4 &&
+      if (input == inputs.end()) return role_of_element(one.input, one.component) == Role::decides;
+      return one.component < 4 &&
              roles_[std::size_t(input - inputs.begin())][std::size_t(one.component)] == Role::decides;
     });
   }
@@ -130,38 +135,41 @@ class OtherInputs {
     return component < 3 && (input.name == space_.input || input.name == space_.origin);
   }
 
-  /// What tells the values at the draw's vertices, however many there are.
+  /// Appends what tells one number at the draw's vertices, however many there are: it stands `offset` floats
+  /// behind the beginning of each. `may_be_step`: it is no part of an eye or a direction.
+  void append_number(const std::string& name, Role role, std::size_t offset, bool may_be_step) {
+    if (role == Role::none) return;
+    const Capture& capture = *measured_.seen;
+    std::vector<float> values;
+    for (std::size_t at = offset; at < capture.data.size(); at += capture.stride)
+      values.push_back(capture.data[at]);
+    const bool constant = std::ranges::adjacent_find(values, std::not_equal_to()) == values.end();
+    inputs_.begin_vector("varying: " + name, role == Role::decides, constant && may_be_step);
+    append_digest(std::as_bytes(std::span(values)), inputs_.varying);
+  }
+
   void append_captured(std::size_t input) {
     const StageInput& described = measured_.stages.inputs[input];
     if (!described.written) return;
-    const Capture& capture = *measured_.seen;
-    std::vector<float> values;
     for (std::size_t c = 0; c < std::size_t(described.components); ++c) {
       if (is_place(described, c)) continue;
-      for (std::size_t at = capture.offsets[input] + c; at < capture.data.size(); at += capture.stride)
-        values.push_back(capture.data[at]);
+      append_number(fmt::format("{}.{}", described.name, c), roles_[input][c],
+                    measured_.seen->offsets[input] + c, described.components < 3 || c == 3);
     }
-    const std::array<Role, 4>& roles = roles_[input];
-    const bool constant = capture.range.low[input] == capture.range.high[input];
-    inputs_.begin_vector("varying: " + described.name, std::ranges::find(roles, Role::decides) != roles.end(),
-                         constant && described.name != space_.origin);
-    append_digest(std::as_bytes(std::span(values)), inputs_.varying);
   }
 
   void append_unprobed(std::size_t input) {
     const UnprobedInput& described = measured_.stages.unprobed[input];
-    const Role role = role_of_unprobed(described);
-    if (described.floats == 0) {
-      inputs_.unreadable |= role != Role::none;
-      return;
+    const std::size_t components = described.components;
+    for (std::size_t i = 0; i < components * described.elements; ++i) {
+      const std::string name = described.element(i / components);
+      const Role role = role_of_element(name, int(i % components));
+      if (described.floats() > 0)
+        append_number(fmt::format("{}.{}", name, i % components), role,
+                      measured_.seen->unprobed_offsets[input] + i, components < 3 || i % components == 3);
+      else
+        inputs_.unreadable |= described.written && role != Role::none;
     }
-    const Capture& capture = *measured_.seen;
-    std::vector<float> values;
-    for (std::size_t at = capture.unprobed_offsets[input]; at < capture.data.size(); at += capture.stride)
-      values.insert(values.end(), capture.data.begin() + std::ptrdiff_t(at),
-                    capture.data.begin() + std::ptrdiff_t(at + described.floats));
-    inputs_.begin_vector("varying: " + described.name, role == Role::decides);
-    append_digest(std::as_bytes(std::span(values)), inputs_.varying);
   }
 
   const MarchContext& measured_;

@@ -354,13 +354,14 @@ std::string_view RayCasterStage::why_measured(const Draw& draw, const ProxyBox& 
                                               const std::vector<bool>& follows, bool turned) const {
   const KnownMarch& known = draw.known.march;
   if (!known.march) return "the first of the volume";
-  const bool changed_alone = changed_beside_fragment_stage(known.inputs, inputs, follows);
-  const bool same = same_in_fragment_stage(known.inputs, inputs) && !changed_alone;
+  const BesideChange beside = change_beside_fragment_stage(known.inputs, inputs, follows);
+  const bool same = same_in_fragment_stage(known.inputs, inputs) && beside == BesideChange::none;
   if (!same) wait_for_earlier_drawing();
   const bool holds =
-      same || (inputs.fixed == known.inputs.fixed &&
-               still_marches(draw.measured(), *known.march, box,
-                             rays_looked_at(*known.march, turned && !changed_alone, account_.frames())));
+      same ||
+      (inputs.fixed == known.inputs.fixed &&
+       still_marches(draw.measured(), *known.march, box,
+                     rays_looked_at(*known.march, turned && beside != BesideChange::alone, account_.frames())));
   if (!holds) return "tables, uniforms or state that colours depend on changed";
   return session_.disabled_optimizations(Optimization::known_colours) ? "asked to" : "";
 }

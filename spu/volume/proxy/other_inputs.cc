@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
@@ -38,6 +40,13 @@ Role role_of(const program::RayFinding& ray, const std::function<bool(const prog
     if (std::ranges::any_of(*list, is_meant)) return Role::decides;
   }
   return std::ranges::any_of(ray.data, is_meant) ? Role::colours : Role::none;
+}
+
+/// Without the last three of 23 bits: what a vertex stage computes anew in every image is another number each
+/// time, though it stays.
+float without_rounding(float value) {
+  constexpr std::uint32_t half = 4;
+  return std::bit_cast<float>((std::bit_cast<std::uint32_t>(value) + half) & ~(2 * half - 1));
 }
 
 /// What one image depends on, so far as it is seen here.
@@ -135,40 +144,67 @@ class OtherInputs {
     return component < 3 && (input.name == space_.input || input.name == space_.origin);
   }
 
-  /// Appends what tells one number at the draw's vertices, however many there are: it stands `offset` floats
-  /// behind the beginning of each. `may_be_step`: it is no part of an eye or a direction.
-  void append_number(const std::string& name, Role role, std::size_t offset, bool may_be_step) {
-    if (role == Role::none) return;
+  /// Numbers of one varying, each with what it does; they stand `offset` floats behind the beginning of each
+  /// vertex.
+  struct HandedOn {
+    std::string name;
+    std::vector<Role> roles;
+    std::size_t offset = 0;
+  };
+
+  /// Of all vertices, one after the other.
+  std::vector<float> values_of(std::size_t offset, std::span<const std::size_t> components) const {
     const Capture& capture = *measured_.seen;
     std::vector<float> values;
-    for (std::size_t at = offset; at < capture.data.size(); at += capture.stride)
-      values.push_back(capture.data[at]);
+    for (std::size_t at = offset; at < capture.data.size(); at += capture.stride) {
+      for (const std::size_t component : components)
+        values.push_back(without_rounding(capture.data[at + component]));
+    }
+    return values;
+  }
+
+  /// Numbers that do the same are one vector: of an eye that turns about an axis, one number stays.
+  void append_handed_on(const HandedOn& handed) {
+    for (const Role role : {Role::colours, Role::decides, Role::places}) {
+      std::vector<std::size_t> components;
+      for (std::size_t c = 0; c < handed.roles.size(); ++c) {
+        if (handed.roles[c] == role) components.push_back(c);
+      }
+      if (!components.empty()) append_group(handed, role, components);
+    }
+  }
+
+  void append_group(const HandedOn& handed, Role role, std::span<const std::size_t> components) {
+    const std::vector<float> values = values_of(handed.offset, components);
     const bool constant = std::ranges::adjacent_find(values, std::not_equal_to()) == values.end();
-    inputs_.begin_vector("varying: " + name, role == Role::decides, constant && may_be_step);
+    // An eye has three numbers.
+    const bool may_be_step = constant && components.size() == 1;
+    inputs_.begin_vector(fmt::format("varying: {} {}", handed.name, int(role)), role == Role::decides,
+                         may_be_step);
     append_digest(std::as_bytes(std::span(values)), inputs_.varying);
   }
 
   void append_captured(std::size_t input) {
     const StageInput& described = measured_.stages.inputs[input];
     if (!described.written) return;
-    for (std::size_t c = 0; c < std::size_t(described.components); ++c) {
-      if (is_place(described, c)) continue;
-      append_number(fmt::format("{}.{}", described.name, c), roles_[input][c],
-                    measured_.seen->offsets[input] + c, described.components < 3 || c == 3);
-    }
+    HandedOn handed{described.name, {}, measured_.seen->offsets[input]};
+    for (std::size_t c = 0; c < std::size_t(described.components); ++c)
+      handed.roles.push_back(is_place(described, c) ? Role::none : roles_[input][c]);
+    append_handed_on(handed);
   }
 
   void append_unprobed(std::size_t input) {
     const UnprobedInput& described = measured_.stages.unprobed[input];
-    const std::size_t components = described.components;
-    for (std::size_t i = 0; i < components * described.elements; ++i) {
-      const std::string name = described.element(i / components);
-      const Role role = role_of_element(name, int(i % components));
-      if (described.floats() > 0)
-        append_number(fmt::format("{}.{}", name, i % components), role,
-                      measured_.seen->unprobed_offsets[input] + i, components < 3 || i % components == 3);
-      else
-        inputs_.unreadable |= described.written && role != Role::none;
+    for (std::size_t element = 0; element < described.elements; ++element) {
+      HandedOn handed{described.element(element), {}, 0};
+      for (std::size_t c = 0; c < described.components; ++c)
+        handed.roles.push_back(role_of_element(handed.name, int(c)));
+      if (described.floats() > 0) {
+        handed.offset = measured_.seen->unprobed_offsets[input] + element * described.components;
+        append_handed_on(handed);
+      } else if (described.written) {
+        inputs_.unreadable |= std::ranges::any_of(handed.roles, [](Role role) { return role != Role::none; });
+      }
     }
   }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,9 @@ struct Scenario {
   /// that a substitute must therefore have noticed before the frame is shown.
   std::vector<int> key_frames = {};
   Profile profile = Profile::core;
+  /// So many images at most are compared whole: where nothing but the camera changes, the viewer would be
+  /// faster without Understudy if more were. Empty: any number.
+  std::optional<int> most_compared = {};
   /// Called once, with the context current. What it creates lives as long as the context.
   std::function<DrawFrame(Canvas&)> start;
 };

@@ -39,6 +39,13 @@ std::vector<int> substituted_frames(const std::filesystem::path& report) {
   return frames;
 }
 
+int compared_images(const std::filesystem::path& report) {
+  int images = 0;
+  const nlohmann::json json = nlohmann::json::parse(contents(report));
+  for (const auto& volume : json.at("volumes")) images += volume.at("verify").at("frames").get<int>();
+  return images;
+}
+
 bool is_key(const Scenario& scenario, int frame) {
   return std::find(scenario.key_frames.begin(), scenario.key_frames.end(), frame) != scenario.key_frames.end();
 }
@@ -48,7 +55,9 @@ bool is_key(const Scenario& scenario, int frame) {
 Verdict judge(const std::filesystem::path& folder, int frames) {
   const std::vector<int> substituted = substituted_frames(folder / "report.json");
   const std::filesystem::path exact = folder / (exists(folder / "exact") ? "exact" : "bare");
-  Verdict verdict{.frames = frames, .substituted = static_cast<int>(substituted.size())};
+  Verdict verdict{.frames = frames,
+                  .substituted = static_cast<int>(substituted.size()),
+                  .compared = compared_images(folder / "report.json")};
   for (int frame = 0; frame < frames; ++frame) {
     const std::string name = fmt::format("frame_{:04}.pam", frame);
     const TileScore tile = worst_tile(read_image(folder / "under" / name), read_image(folder / "bare" / name),
@@ -86,6 +95,9 @@ std::string what_is_not_met(const Scenario& scenario, const Verdict& verdict) {
     return "fewer than half of the frames were substituted";
   if (scenario.expectation == Expectation::must_be_left && verdict.substituted > 0)
     return "frames were substituted, whose drawing has effects beside the image";
+  if (scenario.most_compared && verdict.compared > *scenario.most_compared)
+    return fmt::format("{} images were compared whole, of which {} are allowed", verdict.compared,
+                       *scenario.most_compared);
   return {};
 }
 

@@ -15,6 +15,7 @@ namespace adversary {
 struct Verdict {
   int frames = 0;
   int substituted = 0;
+  int compared = 0;  ///< whole images
   std::vector<int> wrong_frames;
   int wrong_substituted = 0;  ///< of the wrong ones, those that were substituted
   TileScore worst;

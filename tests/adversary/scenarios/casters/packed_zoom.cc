@@ -23,6 +23,7 @@ Scenario packed_zoom() {
           "turns again.",
       .expectation = Expectation::must_be_substituted,
       .key_frames = {12, 13, 14, 15, 16, 17},
+      .most_compared = 6,
       .start = [](Canvas& canvas) -> DrawFrame {
         const GlslProgram program(canvas, R"(#version 450 core
 layout(location = 0) in vec3 a_position;

@@ -21,6 +21,7 @@ Scenario vertex_camera_block() {
               "and where they go, and the fragment shader marches without any uniform but its step. Nothing "
               "but the camera changes.",
           .expectation = Expectation::must_be_substituted,
+          .most_compared = 2,
           .start = [](Canvas& canvas) -> DrawFrame {
             const GlslProgram program(canvas, R"(#version 450 core
 layout(location = 0) in vec3 corner;

@@ -19,7 +19,10 @@ data; of these the last image alone is compared.
 With --simultaneous the two runs of a round share one processor, and "ms bare" is what frames had of it: whatever slows the
 machine for a second slows both. This is for machines with neighbours, on which times of two runs in a row
 scatter by more than the ratio is asked to tell. Viewers whose script is not Python, or whose nodes are processes of their
-own, cannot be timed that way.
+own, cannot be timed that way. --simultaneous-near-one does so where the viewer draws in the end, or the first ratio is near 1.
+
+With --jobs N so many rows are measured at once, each on a processor of its own. With --resume, rows that table.json has
+are not measured again: all of them take hours.
 
 With --watch each row runs once under Understudy, with the speed guard off, and once bare: the table says how many images
 were compared and lost, and what recognition and sentinels took of a bare frame, on average over all frames but the
@@ -43,6 +46,7 @@ import shutil
 import statistics
 import subprocess
 import sys
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -56,8 +60,10 @@ PROCESSOR_TIME = Path(__file__).resolve().parent / "processor_time"
 TILE = 16
 # The bounds of docs/verification.md, in 1/255: on a tile's average, and on what an eighth of its pixels reach.
 MAX_EXCESS, MAX_COMMON = 3.0, 8.0
-# A viewer that draws in the end is looked at for so many frames and for so long, if its frames are short.
-FRAMES_HANDED_BACK, HANDED_BACK_MS, SHORT_FRAME_MS = 60, 5000, 500
+# A viewer that draws in the end is looked at for so long, and for some frames, if its frames are short.
+HANDED_BACK_MS, SHORT_FRAME_MS = 5000, 500
+# A first ratio below this is near 1, as far as two runs in a row tell.
+NEAR_ONE = 1.3
 # A viewer that says less than this of a frame has only asked for it to be drawn later, as mayavi does.
 DRAWN_MS = 1
 # Slices that are blended into 8 bits: each blend rounds, and a hundred of them drift by some 255ths. Where it is more, every
@@ -196,10 +202,10 @@ def interval(ratios):
     return statistics.median(ratios), math.exp(middle - half), math.exp(middle + half)
 
 
-def pair_of(row, number, frames, arguments):
+def pair_of(row, number, frames, arguments, simultaneous):
     """Bare and substituted runs, one after the other, which of them first changes from round to round; or at the same time."""
     ways = ("bare", "substituted")
-    if arguments.simultaneous:
+    if simultaneous:
         with ThreadPoolExecutor() as pool:
             return dict(zip(ways, pool.map(lambda way: Run(row, way, frames, arguments.seconds, own_clock=True), ways)))
     return {way: Run(row, way, frames, arguments.seconds) for way in (ways if number % 2 == 0 else reversed(ways))}
@@ -212,7 +218,7 @@ def frames_needed(pair, arguments):
     short = bare.frame_ms is not None and bare.frame_ms <= SHORT_FRAME_MS
     if not short or run.trouble or run.draws("left") <= run.draws("substituted"):
         return arguments.frames
-    return max(arguments.frames, FRAMES_HANDED_BACK, round(HANDED_BACK_MS / bare.frame_ms))
+    return max(arguments.frames, arguments.handed_back_frames, round(HANDED_BACK_MS / bare.frame_ms))
 
 
 def worst_tile_of_own_frames(row, frames, arguments):
@@ -225,13 +231,25 @@ def worst_tile_of_own_frames(row, frames, arguments):
     return max((verify["worst_tile"] for verify in verified), default=None) if compared >= frames else math.inf
 
 
+def is_near_one(pair):
+    """Whether the viewer draws in the end, or is nearly as fast by itself."""
+    bare, run = pair["bare"], pair["substituted"]
+    if not bare.frame_ms or not run.frame_ms:
+        return False
+    return run.draws("left") > run.draws("substituted") or bare.frame_ms / run.frame_ms < NEAR_ONE
+
+
 def row_of(row, arguments):
-    pair = pair_of(row, 0, arguments.frames, arguments)
+    simultaneous = arguments.simultaneous == "always"
+    pair = pair_of(row, 0, arguments.frames, arguments, simultaneous)
     frames = frames_needed(pair, arguments)
+    again = frames != arguments.frames
+    if arguments.simultaneous == "near" and is_near_one(pair):
+        simultaneous = again = True
     bare_ms, ratios, tiles = [], [], [None, None, None]
     for number in range(arguments.rounds):
-        if number > 0 or frames != arguments.frames:
-            pair = pair_of(row, number, frames, arguments)
+        if number > 0 or again:
+            pair = pair_of(row, number, frames, arguments, simultaneous)
         bare, run = pair["bare"], pair["substituted"]
         if bare.trouble or run.trouble:
             return {"row": row, "trouble": f"the bare viewer: {bare.trouble}" if bare.trouble else run.trouble}
@@ -248,7 +266,7 @@ def row_of(row, arguments):
     last = pair["substituted"]
     ratio, low, high = interval(ratios)
     return {"row": row, "ratio": ratio, "low": low, "high": high, "rounds": len(ratios), "tiles": tiles,
-            "simultaneous": arguments.simultaneous,
+            "simultaneous": simultaneous,
             "in_floats": worst_tile_of_own_frames(row, frames, arguments) if drift else None,
             "bare_ms": statistics.median(bare_ms) if bare_ms else None,
             "substituted": last.draws("substituted"), "left": last.draws("left"), "reason": last.reason()}
@@ -326,35 +344,69 @@ def verdicts(rows):
             yield f"different: {' '.join(row['row'])}: {row['tiles']}"
 
 
+def measured(row, arguments):
+    absent = missing(name_of(row))
+    if absent:
+        return {"row": row, "trouble": absent}
+    return watched(row, arguments) if arguments.watch else row_of(row, arguments)
+
+
+class Results:
+    """The rows measured so far, on the disk as soon as there is one more."""
+
+    def __init__(self, wanted, table, resume):
+        self.wanted, self.table, self.lock = wanted, table, threading.Lock()
+        path = OUT / "table.json"
+        kept = json.loads(path.read_text(encoding="utf-8")) if resume and path.exists() else []
+        self.by_row = {tuple(row["row"]): row for row in kept if "trouble" not in row}
+        if not resume:
+            shutil.rmtree(OUT, ignore_errors=True)
+        OUT.mkdir(parents=True, exist_ok=True)
+
+    def missing(self):
+        return [row for row in self.wanted if row not in self.by_row]
+
+    def rows(self):
+        return [self.by_row[row] for row in self.wanted if row in self.by_row]
+
+    def add(self, row):
+        with self.lock:
+            self.by_row[tuple(row["row"])] = row
+            say(self.table([row]).splitlines()[-1])
+            (OUT / "table.json").write_text(json.dumps(list(self.by_row.values()), indent=1) + "\n", encoding="utf-8")
+            (OUT / "table.md").write_text(self.table(self.rows()), encoding="utf-8")
+
+
 def main():
     parser = argparse.ArgumentParser(prog="./run modes", description=__doc__.split("\n\n", maxsplit=1)[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help="rows whose VIEWER:DATA:MODES contains this; without a name all")
     parser.add_argument("--rounds", type=int, default=5, help="how often bare and substituted runs follow each other (5)")
     parser.add_argument("--frames", type=int, default=12, help="frames that a viewer shows (12)")
     way = parser.add_mutually_exclusive_group()
-    way.add_argument("--simultaneous", action="store_true",
+    way.add_argument("--simultaneous", action="store_const", const="always", default="never",
                      help="both runs of a round at once on one processor, timed by what each has had of it")
+    way.add_argument("--simultaneous-near-one", action="store_const", const="near", dest="simultaneous",
+                     help="that, where the viewer draws in the end or the first ratio is near 1")
     way.add_argument("--watch", action="store_true", help="one long run of each row, without the speed guard")
     parser.add_argument("--seconds", type=int, default=120, help="after these one run of a viewer is given up (120)")
+    parser.add_argument("--handed-back-frames", type=int, default=60, metavar="N",
+                        help="of a viewer that draws in the end, at least so many, if they are short (60)")
+    parser.add_argument("--jobs", type=int, default=1, help="rows measured at once, each on a processor of its own (1)")
+    parser.add_argument("--resume", action="store_true", help="keep the rows that out/modes/table.json has")
     arguments = parser.parse_args()
     if not UNDERSTUDY.exists():
         sys.exit("modes: build/bin/understudy is not built; run ./run build")
     wanted = [row for row in ROWS if not arguments.names or any(name in ":".join(row) for name in arguments.names)]
     if not wanted:
         sys.exit("modes: no row has such a name; tests/clients/modes.py lists them")
-    shutil.rmtree(OUT, ignore_errors=True)
-    OUT.mkdir(parents=True)
-    if arguments.simultaneous:
-        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
-    rows = []
     table = watched_markdown if arguments.watch else markdown
-    for row in wanted:
-        absent = missing(name_of(row))
-        rows.append({"row": row, "trouble": absent} if absent
-                    else watched(row, arguments) if arguments.watch else row_of(row, arguments))
-        say(table(rows[-1:]).splitlines()[-1])
-        (OUT / "table.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
-        (OUT / "table.md").write_text(table(rows), encoding="utf-8")
+    results = Results(wanted, table, arguments.resume)
+    processors = sorted(os.sched_getaffinity(0))
+    on_one = arguments.jobs > 1 or arguments.simultaneous != "never"
+    turns = iter(processors * arguments.jobs)
+    with ThreadPoolExecutor(arguments.jobs, initializer=lambda: on_one and os.sched_setaffinity(0, {next(turns)})) as pool:
+        list(pool.map(lambda row: results.add(measured(row, arguments)), results.missing()))
+    rows = results.rows()
     print(table(rows), end="")
     if arguments.watch:
         return 1 if any(row.get("compared", [0, 0, 0])[2] for row in rows) else 0

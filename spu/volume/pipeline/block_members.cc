@@ -21,9 +21,9 @@ constexpr GLint most_block_bytes = 1 << 20;
 constexpr std::size_t most_apart = 64;
 
 struct Extent {
-  int columns = 1;  ///< of a matrix
-  int rows = 1;     ///< or components of a vector
-  int bytes_a_component = 4;
+  std::size_t columns = 1;  ///< of a matrix
+  std::size_t rows = 1;     ///< or components of a vector
+  std::size_t bytes_a_component = 4;
 };
 
 Extent extent_of(GLenum type) {
@@ -89,9 +89,9 @@ std::size_t asked(const DispatchTable& gl, GLuint program, GLuint uniform, GLenu
 std::size_t bytes_of_element(const DispatchTable& gl, GLuint program, GLuint uniform, GLenum type) {
   Extent extent = extent_of(type);
   if (asked(gl, program, uniform, GL_UNIFORM_IS_ROW_MAJOR) != 0) std::swap(extent.columns, extent.rows);
-  const std::size_t column = std::size_t(extent.rows * extent.bytes_a_component);
+  const std::size_t column = extent.rows * extent.bytes_a_component;
   const std::size_t stride = asked(gl, program, uniform, GL_UNIFORM_MATRIX_STRIDE);
-  return std::size_t(extent.columns - 1) * std::max(stride, column) + column;
+  return (extent.columns - 1) * std::max(stride, column) + column;
 }
 
 /// Adds a uniform of a block, element by element.

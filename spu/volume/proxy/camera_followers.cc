@@ -69,9 +69,9 @@ std::vector<bool> CameraFollowers::look(const MarchInputs& before, const MarchIn
     if (returns) vector.returned = std::min(vector.returned + 1, most_returns);
     if (!same && (vector.stayed == most_stayed || (returns && vector.returned < most_returns)))
       vector.until_trusted = changes_until_trusted + 1;
-    // What shows nothing yet, as a plane before the volume, would be trusted when it does.
     // It may have moved with the camera while a flag kept it from choosing anything.
     if (chooses_now && !std::exchange(vector.chose, chooses_now)) vector.until_trusted = changes_until_trusted;
+    // What shows nothing yet, as a plane before the volume, would be trusted when it does.
     if (!same && vector.until_trusted > 0 && !chooses_now) --vector.until_trusted;
     follow.insert(follow.end(), values.size(), same || vector.until_trusted == 0);
     vector.stayed = same ? std::min(vector.stayed + 1, most_stayed) : 0;

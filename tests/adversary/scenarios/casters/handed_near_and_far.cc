@@ -18,9 +18,7 @@ Scenario handed_near_and_far() {
       .sentence =
           "A row of hills. As vispy does it, the vertex shader hands on where each ray crosses the near and "
           "the far "
-          "plane, from inverted matrices, and the back faces are drawn. The camera goes around at one height, "
-          "so "
-          "that one number of all these stays, but for rounding.",
+          "plane, from inverted matrices, and the back faces are drawn. The camera goes around at one height.",
       .expectation = Expectation::must_be_substituted,
       .most_compared = 2,
       .start = [](Canvas& canvas) -> DrawFrame {

@@ -109,11 +109,14 @@ double offset_of_values(std::uint64_t frame) {
 }
 
 /// Where the camera moved, as it does in every frame while somebody turns a volume, half of it in each of two
-/// frames, and other values each time.
-RaysLookedAt rays_looked_at(const March& march, bool turned, std::uint64_t frame) {
-  if (!turned) return {};
+/// frames, and other values each time. Where a step may have changed, always a long ray: short ones have as
+/// many samples under a step that is a little longer.
+RaysLookedAt rays_looked_at(const March& march, bool turned, BesideChange beside, std::uint64_t frame) {
+  if (!turned || beside == BesideChange::alone) return {};
   const bool values = march.shows_one_colour() || frame % 2 == 0;
-  return {.values = values ? 3 : 0, .offset = offset_of_values(frame), .long_ray = !values};
+  return {.values = values ? 3 : 0,
+          .offset = offset_of_values(frame),
+          .long_ray = !values || beside == BesideChange::with_camera};
 }
 
 /// Where steps have another length, as in every frame while somebody turns a volume in VTK, and nothing else is
@@ -357,11 +360,9 @@ std::string_view RayCasterStage::why_measured(const Draw& draw, const ProxyBox& 
   const BesideChange beside = change_beside_fragment_stage(known.inputs, inputs, follows);
   const bool same = same_in_fragment_stage(known.inputs, inputs) && beside == BesideChange::none;
   if (!same) wait_for_earlier_drawing();
-  const bool holds =
-      same ||
-      (inputs.fixed == known.inputs.fixed &&
-       still_marches(draw.measured(), *known.march, box,
-                     rays_looked_at(*known.march, turned && beside != BesideChange::alone, account_.frames())));
+  const bool holds = same || (inputs.fixed == known.inputs.fixed &&
+                              still_marches(draw.measured(), *known.march, box,
+                                            rays_looked_at(*known.march, turned, beside, account_.frames())));
   if (!holds) return "tables, uniforms or state that colours depend on changed";
   return session_.disabled_optimizations(Optimization::known_colours) ? "asked to" : "";
 }

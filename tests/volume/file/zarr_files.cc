@@ -8,8 +8,11 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 
 namespace understudy::volume::testing {
 
@@ -48,6 +51,35 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
 
 void write_bytes(const std::filesystem::path& path, const Bytes& bytes) {
   write_text(path, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+float half_by_definition(std::uint16_t bits) {
+  const bool negative = (bits & 0x8000) != 0;
+  const int exponent = (bits >> 10) & 31, fraction = bits & 1023;
+  if (exponent == 31 && fraction != 0)
+    return std::bit_cast<float>((negative ? 0xff800000U : 0x7f800000U) | std::uint32_t(fraction) << 13);
+  const double magnitude = exponent == 31  ? std::numeric_limits<double>::infinity()
+                           : exponent == 0 ? std::ldexp(fraction, -24)
+                                           : std::ldexp(1024 + fraction, exponent - 25);
+  return float(std::copysign(magnitude, negative ? -1.0 : 1.0));
+}
+
+Bytes read_as_booleans(const Bytes& elements) {
+  Bytes read;
+  for (const std::byte element : elements)
+    read.push_back(element == std::byte{0} ? std::byte{0} : std::byte{1});
+  return read;
+}
+
+Bytes read_as_halves(const Bytes& elements) {
+  std::vector<float> read;
+  for (std::size_t i = 0; i + 1 < elements.size(); i += 2)
+    read.push_back(half_by_definition(std::uint16_t(unsigned(elements[i]) | unsigned(elements[i + 1]) << 8)));
+  return bytes_of(read);
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
 }
 
 Bytes chunk_of(const Bytes& scalars, const std::array<int, 3>& low, const ZarrChoice& choice) {

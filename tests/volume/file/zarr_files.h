@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <random>
 #include <string>
@@ -35,6 +36,15 @@ struct Survival {
 /// `name` in `folder` is changed `times` times, and `volume` opened, which says where it is when it is refused.
 void read_with_damage(const TemporaryFolder& folder, const std::string& name, const std::string& volume,
                       int times, std::mt19937& random, Survival& survival);
+
+/// What IEEE 754 defines; NaNs keep their sign and the bits of their payload.
+float half_by_definition(std::uint16_t bits);
+
+/// Bytes of 0 and 1 of bytes that a program wrote as booleans, and floats of numbers of half precision.
+Bytes read_as_booleans(const Bytes& elements);
+Bytes read_as_halves(const Bytes& elements);
+
+std::string replaced(std::string text, const std::string& from, const std::string& to);
 
 /// The chunk's scalars, those outside of the array 0, in the order that was chosen.
 Bytes chunk_of(const Bytes& scalars, const std::array<int, 3>& low, const ZarrChoice& choice);

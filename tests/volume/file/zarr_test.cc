@@ -4,11 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <filesystem>
 
 #include "tests/volume/file/volume_files.h"
 #include "tests/volume/file/zarr_files.h"
 #include "volume/file/chunks/chunk_codec.h"
+#include "volume/file/chunks/element_type.h"
 #include "volume/opening/open_volume.h"
 
 namespace understudy::volume::testing {
@@ -87,6 +89,47 @@ TEST(ZarrArray, EveryTypeOrderAndCodec) {
           ASSERT_EQ(read_box(*file, box), expected);
         }
       }
+}
+
+TEST(HalfPrecision, EveryBitPatternIsTheFloatOfItsValue) {
+  for (std::uint32_t bits = 0; bits < 65536; ++bits)
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(float_of_half(std::uint16_t(bits))),
+              std::bit_cast<std::uint32_t>(half_by_definition(std::uint16_t(bits))))
+        << bits;
+}
+
+TEST(ZarrArray, BooleansAreReadAsBytesAndHalvesAsFloats) {
+  for (const ChunkCodec codec : {ChunkCodec::none, ChunkCodec::blosc, ChunkCodec::zstd})
+    for (const bool other_way : {false, true}) {
+      SCOPED_TRACE(fmt::format("{} {}", int(codec), other_way));
+      const TemporaryFolder folder;
+      const ZarrChoice halves{ScalarType::u16, codec, other_way, other_way, '.'};
+      const Bytes elements = random_scalars(array_size, halves.type, 5);
+      write_text(folder.file("a.zarr/.zarray"), replaced(metadata(halves), "u2", "f2"));
+      write_chunks(folder.file("a.zarr"), elements, halves);
+      const auto file = open_volume(folder.file("a.zarr"));
+      ASSERT_EQ(file->description().type, ScalarType::f32);
+      EXPECT_EQ(read_box(*file, whole(*file)), read_as_halves(elements));
+      const TexelBox corner{{20, 3, 5}, {37, 9, 11}};
+      Bytes expected(texels_in(corner) * sizeof(float));
+      copy_texels(corner, sizeof(float), whole(*file), read_as_halves(elements), corner, expected);
+      EXPECT_EQ(read_box(*file, corner), expected);
+
+      const ZarrChoice booleans{ScalarType::u8, codec, false, other_way, '.'};
+      Bytes truths = random_scalars(array_size, booleans.type, 6);
+      for (std::size_t i = 0; i < truths.size(); i += 3) truths[i] = std::byte{0};
+      write_text(folder.file("b.zarr/.zarray"), replaced(metadata(booleans, "", "", "true"), "<u1", "|b1"));
+      write_chunks(folder.file("b.zarr"), truths, booleans);
+      std::filesystem::remove(folder.file("b.zarr/0.0.0"));
+      const auto mask = open_volume(folder.file("b.zarr"));
+      ASSERT_EQ(mask->description().type, ScalarType::u8);
+      Bytes filled = read_as_booleans(truths);
+      for (int z = 0; z < chunk_size[2]; ++z)
+        for (int y = 0; y < chunk_size[1]; ++y)
+          for (int x = 0; x < chunk_size[0]; ++x)
+            filled[std::size_t((z * array_size[1] + y) * array_size[0] + x)] = std::byte{1};
+      EXPECT_EQ(read_box(*mask, whole(*mask)), filled);
+    }
 }
 
 TEST(ZarrArray, ChunksThatAreNotThereHaveOneValue) {

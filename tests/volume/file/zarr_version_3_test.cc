@@ -213,6 +213,28 @@ TEST(ZarrVersion3, EveryTypeOrderAndCodecInChunksAndShards) {
       }
 }
 
+TEST(ZarrVersion3, BooleansAreReadAsBytesAndHalvesAsFloats) {
+  const auto write = [](const TemporaryFolder& folder, const Bytes& elements, const Version3& choice,
+                        const std::string& type, const std::string& fill) {
+    write_array(folder.file("a"), elements, choice);
+    const std::string text = metadata(choice, chunk_size, codecs_of(choice));
+    write_text(folder.file("a/zarr.json"), replaced(replaced(text, type_name(choice.chunk.type), type),
+                                                    R"("fill_value": 0)", R"("fill_value": )" + fill));
+  };
+  for (const bool other_way : {false, true}) {
+    const TemporaryFolder folder;
+    const Version3 halves{{ScalarType::u16, ChunkCodec::zstd, other_way, other_way, '/'}, other_way};
+    const Bytes elements = random_scalars(array_size, ScalarType::u16, 7);
+    write(folder, elements, halves, "float16", "0.0");
+    expect_boxes(*open_volume(folder.file("a")), read_as_halves(elements), ScalarType::f32);
+
+    const Version3 booleans{{ScalarType::u8, ChunkCodec::blosc, false, other_way, '/'}, other_way};
+    const Bytes truths = random_scalars(array_size, ScalarType::u8, 8);
+    write(folder, truths, booleans, "bool", "false");
+    expect_boxes(*open_volume(folder.file("a")), read_as_booleans(truths), ScalarType::u8);
+  }
+}
+
 TEST(ZarrVersion3, AShardIsReadInPart) {
   const TemporaryFolder folder;
   const Version3 choice;
@@ -224,14 +246,14 @@ TEST(ZarrVersion3, AShardIsReadInPart) {
 }
 
 template <typename Scalar>
-void expect_fill(ScalarType type, const char* fill, Scalar scalar) {
+void expect_fill(ScalarType type, const char* fill, Scalar scalar, const char* element = nullptr) {
   SCOPED_TRACE(fill);
   const TemporaryFolder folder;
   const Version3 choice{{.type = type}};
   std::string text = metadata(choice, chunk_size, codecs_of(choice));
-  const std::string zero = R"("fill_value": 0)";
+  if (element != nullptr) text = replaced(text, type_name(type), element);
   write_text(folder.file("a/zarr.json"),
-             text.replace(text.find(zero), zero.size(), fmt::format(R"("fill_value": {})", fill)));
+             replaced(text, R"("fill_value": 0)", fmt::format(R"("fill_value": {})", fill)));
   const auto file = open_volume(folder.file("a"));
   EXPECT_EQ(read_box(*file, whole(*file)), bytes_of(std::vector<Scalar>(texels_in(whole(*file)), scalar)));
 }
@@ -243,6 +265,9 @@ TEST(ZarrVersion3, FillValuesAreExact) {
   expect_fill(ScalarType::i16, "-7.0", std::int16_t(-7));
   expect_fill(ScalarType::f32, R"("0x40490fdb")", std::bit_cast<float>(0x40490fdbu));
   expect_fill(ScalarType::f64, R"("-Infinity")", -std::numeric_limits<double>::infinity());
+  expect_fill(ScalarType::u16, R"("0x3e00")", 1.5F, "float16");
+  expect_fill(ScalarType::u16, "-0.25", -0.25F, "float16");
+  expect_fill(ScalarType::u8, "true", std::uint8_t(1), "bool");
 }
 
 TEST(ZarrVersion3, DimensionsHaveTheNamesThatTheyAreGiven) {

@@ -33,34 +33,41 @@ std::uint64_t number_at(std::span<const std::byte> bytes, std::size_t at, bool b
 
 ChunkFiles::ChunkFiles(std::string folder, ZarrArray array, ReadableFiles files)
     : folder_(std::move(folder)), array_(std::move(array)), files_(std::move(files)) {
-  decoded_bytes_ = bytes_per_scalar(array_.type);
-  for (const std::int64_t length : array_.chunks) decoded_bytes_ *= std::size_t(length);
+  std::size_t elements = 1;
+  for (const std::int64_t length : array_.chunks) elements *= std::size_t(length);
+  decoded_bytes_ = elements * bytes_per_scalar(array_.element.type);
+  stored_bytes_ = elements * stored_bytes(array_.element);
 }
 
 std::vector<std::byte> ChunkFiles::scalars_of(std::span<const std::int64_t> chunk) {
-  std::vector<std::byte> scalars(decoded_bytes_);
   const std::optional<std::vector<std::byte>> bytes = array_.shards ? packed_in_shard(chunk) : packed(chunk);
   if (!bytes) {
+    std::vector<std::byte> scalars(decoded_bytes_);
     for (std::size_t at = 0; at < scalars.size(); at += array_.fill.size())
       std::ranges::copy(array_.fill, scalars.begin() + std::ptrdiff_t(at));
     return scalars;
   }
+  std::vector<std::byte> elements(stored_bytes_);
   try {
     std::span<const std::byte> checked = *bytes;
     if (array_.encoding.checksum) checked = without_checksum(checked);
-    decode_chunk(array_.encoding.codec, checked, scalars);
+    decode_chunk(array_.encoding.codec, checked, elements);
   } catch (const std::runtime_error& error) {
     throw FileError(fmt::format("{}: Zarr: {}; get the file again", path_of(chunk), error.what()));
   }
   if (array_.encoding.big_endian != (std::endian::native == std::endian::big))
-    reverse_bytes(scalars, bytes_per_scalar(array_.type));
+    reverse_bytes(elements, stored_bytes(array_.element));
+  if (array_.element.storage == Storage::scalar) return elements;
+  std::vector<std::byte> scalars(decoded_bytes_);
+  convert_elements(array_.element.storage, elements, scalars);
   return scalars;
 }
 
 std::size_t ChunkFiles::memory_to_read(std::size_t shards) const {
   // One more, as it lies in the file.
   const std::size_t indices = array_.shards ? shards + 1 : 0;
-  return most_packed_bytes() + indices * chunks_in_shard() * index_entry_bytes;
+  const std::size_t unconverted = array_.element.storage == Storage::scalar ? 0 : stored_bytes_;
+  return most_packed_bytes() + unconverted + indices * chunks_in_shard() * index_entry_bytes;
 }
 
 std::string ChunkFiles::path_of(std::span<const std::int64_t> chunk) const {
@@ -132,7 +139,7 @@ ChunkFiles::ShardIndex ChunkFiles::read_index(ByteSource& file) {
 std::vector<std::byte> ChunkFiles::read_bytes(ByteSource& file, Place place) {
   if (place.bytes > most_packed_bytes())
     throw FileError(fmt::format("{}: Zarr: a chunk of {} bytes has {}; get it again", file.path(),
-                                decoded_bytes_, place.bytes));
+                                stored_bytes_, place.bytes));
   std::vector<std::byte> bytes(static_cast<std::size_t>(place.bytes));
   bytes.resize(file.read(place.offset, bytes));
   bytes_read_ += bytes.size();
@@ -142,7 +149,7 @@ std::vector<std::byte> ChunkFiles::read_bytes(ByteSource& file, Place place) {
 /// What is compressed may be a little longer than what it is of.
 std::size_t ChunkFiles::most_packed_bytes() const {
   constexpr std::size_t most_overhead = std::size_t(1) << 16;
-  return decoded_bytes_ + decoded_bytes_ / 2 + most_overhead;
+  return stored_bytes_ + stored_bytes_ / 2 + most_overhead;
 }
 
 std::size_t ChunkFiles::chunks_in_shard() const {

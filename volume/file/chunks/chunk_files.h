@@ -31,7 +31,7 @@ class ChunkFiles {
 
   /// Of one chunk, in bytes.
   std::size_t decoded_bytes() const { return decoded_bytes_; }
-  /// What is in use at most while chunks of `shards` shards are read, in bytes, beyond the chunks themselves.
+  /// Largest memory in use while chunks of `shards` shards are read, in bytes, beyond the chunks themselves.
   std::size_t memory_to_read(std::size_t shards) const;
   std::uint64_t bytes_read() const { return bytes_read_; }
 
@@ -60,6 +60,7 @@ class ChunkFiles {
   ZarrArray array_;
   ReadableFiles files_;
   std::size_t decoded_bytes_ = 0;
+  std::size_t stored_bytes_ = 0;  ///< of one decoded chunk, before its elements are converted
   /// Each is read once: those of neighbours in a row may be long.
   std::map<std::vector<std::int64_t>, ShardIndex> indices_;
   std::uint64_t bytes_read_ = 0;

@@ -145,7 +145,7 @@ void check_work(const ZarrImage& image, const ZarrArray& array, const std::strin
   constexpr double most_small_chunks = 1 << 20, least_scalars = 512;
   constexpr double allowed_bytes = double(std::uint64_t(4) << 30), allowed_times = 64, index_entry_bytes = 16;
   double texels = 1, chunks = 1, scalars = 1, shards = 1;
-  double decoded = double(bytes_per_scalar(array.type)), entries = 1;
+  double decoded = double(bytes_per_scalar(array.element.type)), entries = 1;
   for (std::size_t axis = 0; axis < array.shape.size(); ++axis) {
     const double in_shard = array.shards ? double(array.shards->chunks[axis]) : 1;
     const double length = double(array.chunks[axis]);
@@ -161,7 +161,7 @@ void check_work(const ZarrImage& image, const ZarrArray& array, const std::strin
     throw FileError(fmt::format("{}: Zarr: it has {:.0f} chunks of {} scalars; write larger ones", folder,
                                 chunks, scalars));
   const double bytes = chunks * decoded + (array.shards ? shards * entries * index_entry_bytes : 0);
-  if (bytes > std::max(allowed_bytes, allowed_times * texels * double(bytes_per_scalar(array.type))))
+  if (bytes > std::max(allowed_bytes, allowed_times * texels * double(bytes_per_scalar(array.element.type))))
     throw FileError(
         fmt::format("{}: Zarr: to read {:.0f} scalars takes {:.0f} MiB of chunks and indices; write chunks "
                     "and shards of fewer time steps and channels, no larger than the array",
@@ -206,10 +206,10 @@ std::unique_ptr<VolumeFile> open_zarr(const std::string& folder, const FileHints
         fmt::format("{}: Zarr: level {} has {} x {} x {} scalars, more than {} along an axis; take a "
                     "coarser one: --level {}",
                     folder, hints.level, size[0], size[1], size[2], longest, hints.level + 1));
-  checked_bytes(size, array.type, folder);
+  checked_bytes(size, array.element.type, folder);
   std::ranges::transform(size, description.size.begin(), [](std::int64_t length) { return int(length); });
   description.spacing = image.spacing;
-  description.type = array.type;
+  description.type = array.element.type;
   description.scale = image.scale;
   description.offset = image.offset;
   description.time_steps = checked_time_steps(steps, folder);

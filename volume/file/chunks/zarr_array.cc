@@ -17,11 +17,12 @@ using nlohmann::json;
 
 constexpr std::int64_t most_chunks_in_a_shard = std::int64_t(1) << 20;
 
-ScalarType type_of_version_2(const json& dtype, const std::string& path) {
-  static const std::map<std::string, ScalarType> names{
-      {"u1", ScalarType::u8},  {"i1", ScalarType::i8},  {"u2", ScalarType::u16}, {"i2", ScalarType::i16},
-      {"u4", ScalarType::u32}, {"i4", ScalarType::i32}, {"u8", ScalarType::u64}, {"i8", ScalarType::i64},
-      {"f4", ScalarType::f32}, {"f8", ScalarType::f64}};
+ElementType element_of_version_2(const json& dtype, const std::string& path) {
+  static const std::map<std::string, ElementType> names{
+      {"u1", {ScalarType::u8}},  {"i1", {ScalarType::i8}},  {"u2", {ScalarType::u16}},
+      {"i2", {ScalarType::i16}}, {"u4", {ScalarType::u32}}, {"i4", {ScalarType::i32}},
+      {"u8", {ScalarType::u64}}, {"i8", {ScalarType::i64}}, {"f4", {ScalarType::f32}},
+      {"f8", {ScalarType::f64}}, {"b1", boolean_element},   {"f2", half_element}};
   const std::string text = dtype.is_string() ? dtype.get<std::string>() : "with fields";
   const auto found = names.find(text.size() == 3 ? text.substr(1) : "");
   if (found == names.end())
@@ -57,7 +58,7 @@ ZarrArray array_of_version_2(const json& read, const std::string& folder, const 
   ZarrArray array;
   array.shape = zarr_lengths(read.at("shape"), path);
   array.chunks = zarr_lengths(read.at("chunks"), path);
-  array.type = type_of_version_2(read.at("dtype"), path);
+  array.element = element_of_version_2(read.at("dtype"), path);
   array.encoding.big_endian = read.at("dtype").get<std::string>().front() == '>';
   array.encoding.order.resize(array.shape.size());
   std::iota(array.encoding.order.begin(), array.encoding.order.end(), std::size_t(0));
@@ -66,7 +67,7 @@ ZarrArray array_of_version_2(const json& read, const std::string& folder, const 
   if (read.contains("filters") && !read.at("filters").is_null() && !read.at("filters").empty())
     fail_zarr(path, "its chunks went through filters; write them without");
   array.encoding.codec = compressor_of_version_2(read.at("compressor"), path);
-  array.fill = zarr_fill_value(read.at("fill_value"), array.type, path);
+  array.fill = zarr_fill_value(read.at("fill_value"), array.element, path);
   return array;
 }
 
@@ -75,7 +76,7 @@ void check_lengths(const ZarrArray& array, const std::string& path) {
   if (array.shape.empty() || array.shape.size() > most_zarr_axes || array.chunks.size() != array.shape.size())
     fail_zarr(path, fmt::format("it has {} axes and chunks of {}; up to {} are read", array.shape.size(),
                                 array.chunks.size(), most_zarr_axes));
-  std::uint64_t bytes = bytes_per_scalar(array.type);
+  std::uint64_t bytes = bytes_per_scalar(array.element.type);
   for (std::size_t axis = 0; axis < array.shape.size(); ++axis) {
     if (array.shape[axis] < 1 || array.shape[axis] > longest || array.chunks[axis] < 1 ||
         array.chunks[axis] > longest)

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "volume/file/chunks/chunk_codec.h"
+#include "volume/file/chunks/element_type.h"
 #include "volume/file/readable_files.h"
-#include "volume/file/scalar_type.h"
 
 namespace understudy::volume {
 
@@ -40,11 +40,11 @@ struct Shards {
 struct ZarrArray {
   std::vector<std::int64_t> shape;
   std::vector<std::int64_t> chunks;  ///< length of a chunk along each axis
-  ScalarType type = ScalarType::u8;
+  ElementType element;
   ChunkEncoding encoding;
   ChunkNames names;
   std::optional<Shards> shards;
-  std::vector<std::byte> fill;  ///< the scalar of which chunks consist that are not there, as in memory
+  std::vector<std::byte> fill;  ///< the scalar that missing chunks consist of, of type element.type
 };
 
 constexpr std::size_t most_zarr_axes = 5;

@@ -54,26 +54,35 @@ std::optional<Scalar> scalar_of(const nlohmann::json& number) {
   }
 }
 
+std::optional<std::uint64_t> bits_in(std::string_view text, std::size_t bytes) {
+  if (!text.starts_with("0x") || text.size() != 2 + 2 * bytes) return std::nullopt;
+  std::uint64_t bits = 0;
+  const char* const end = text.data() + text.size();
+  if (std::from_chars(text.data() + 2, end, bits, 16).ptr != end) return std::nullopt;
+  return bits;
+}
+
 template <typename Float>
-std::optional<Float> float_named(std::string_view text) {
+std::optional<Float> float_named(std::string_view text, Storage storage) {
   if (text == "NaN") return std::numeric_limits<Float>::quiet_NaN();
   if (text == "Infinity") return std::numeric_limits<Float>::infinity();
   if (text == "-Infinity") return -std::numeric_limits<Float>::infinity();
   // NaNs with another payload.
+  const bool is_half = storage == Storage::half;
+  const std::optional<std::uint64_t> bits = bits_in(text, is_half ? sizeof(std::uint16_t) : sizeof(Float));
+  if (!bits) return std::nullopt;
+  if (is_half) return Float(float_of_half(std::uint16_t(*bits)));
   using Bits = std::conditional_t<sizeof(Float) == 4, std::uint32_t, std::uint64_t>;
-  if (!text.starts_with("0x") || text.size() != 2 + 2 * sizeof(Float)) return std::nullopt;
-  Bits bits = 0;
-  const char* const end = text.data() + text.size();
-  if (std::from_chars(text.data() + 2, end, bits, 16).ptr != end) return std::nullopt;
-  return std::bit_cast<Float>(bits);
+  return std::bit_cast<Float>(Bits(*bits));
 }
 
 template <typename Scalar>
-std::optional<Scalar> fill_of(const nlohmann::json& fill) {
+std::optional<Scalar> fill_of(const nlohmann::json& fill, Storage storage) {
   if (fill.is_null()) return Scalar{};  // whoever wrote the file did not care
+  if (storage == Storage::boolean && fill.is_boolean()) return Scalar(fill.get<bool>() ? 1 : 0);
   if (fill.is_number()) return scalar_of<Scalar>(fill);
   if constexpr (std::is_floating_point_v<Scalar>)
-    if (fill.is_string()) return float_named<Scalar>(fill.get<std::string>());
+    if (fill.is_string()) return float_named<Scalar>(fill.get<std::string>(), storage);
   return std::nullopt;
 }
 
@@ -133,10 +142,12 @@ std::vector<std::int64_t> zarr_lengths(const nlohmann::json& numbers, const std:
   return lengths;
 }
 
-std::vector<std::byte> zarr_fill_value(const nlohmann::json& fill, ScalarType type, const std::string& path) {
+std::vector<std::byte> zarr_fill_value(const nlohmann::json& fill, const ElementType& element,
+                                       const std::string& path) {
+  const ScalarType type = element.type;
   std::vector<std::byte> bytes;
   const auto read = [&]<typename Scalar>(Scalar) {
-    const std::optional<Scalar> scalar = fill_of<Scalar>(fill);
+    const std::optional<Scalar> scalar = fill_of<Scalar>(fill, element.storage);
     if (!scalar)
       fail_zarr(path, fmt::format("its fill value {} is none of type {}; get it again", zarr_text(fill),
                                   name_of(type)));

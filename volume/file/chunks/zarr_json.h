@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "volume/file/chunks/chunk_codec.h"
+#include "volume/file/chunks/element_type.h"
 #include "volume/file/file_error.h"
 #include "volume/file/readable_files.h"
-#include "volume/file/scalar_type.h"
 
 namespace understudy::volume {
 
@@ -44,9 +44,10 @@ std::string zarr_text(const nlohmann::json& value);
 /// Whole numbers, such as lengths along axes. Throws FileError.
 std::vector<std::int64_t> zarr_lengths(const nlohmann::json& numbers, const std::string& path);
 
-/// The scalar of which chunks consist that are not there, as in memory. Hexadecimal digits are its bits; null
-/// is 0. Throws FileError for what is no value of `type`.
-std::vector<std::byte> zarr_fill_value(const nlohmann::json& fill, ScalarType type, const std::string& path);
+/// The scalar that missing chunks consist of, of type `element.type`. Hexadecimal digits are the bits of an
+/// element as it is stored; null is 0. Throws FileError for what is no value of such an element.
+std::vector<std::byte> zarr_fill_value(const nlohmann::json& fill, const ElementType& element,
+                                       const std::string& path);
 
 inline std::string path_in(const std::string& folder, const std::string& name) {
   return (std::filesystem::path(folder) / name).string();

@@ -33,12 +33,12 @@ std::vector<Extension> extensions_of(const json& entries) {
   return extensions;
 }
 
-ScalarType scalar_type_of(const json& data_type, const std::string& path) {
-  static const std::map<std::string, ScalarType> names{
-      {"uint8", ScalarType::u8},   {"int8", ScalarType::i8},    {"uint16", ScalarType::u16},
-      {"int16", ScalarType::i16},  {"uint32", ScalarType::u32}, {"int32", ScalarType::i32},
-      {"uint64", ScalarType::u64}, {"int64", ScalarType::i64},  {"float32", ScalarType::f32},
-      {"float64", ScalarType::f64}};
+ElementType element_of(const json& data_type, const std::string& path) {
+  static const std::map<std::string, ElementType> names{
+      {"uint8", {ScalarType::u8}},    {"int8", {ScalarType::i8}},    {"uint16", {ScalarType::u16}},
+      {"int16", {ScalarType::i16}},   {"uint32", {ScalarType::u32}}, {"int32", {ScalarType::i32}},
+      {"uint64", {ScalarType::u64}},  {"int64", {ScalarType::i64}},  {"float32", {ScalarType::f32}},
+      {"float64", {ScalarType::f64}}, {"bool", boolean_element},     {"float16", half_element}};
   const std::string name = extension_of(data_type).name;
   const auto found = names.find(name);
   if (found == names.end())
@@ -102,7 +102,7 @@ std::string compressor_named(const std::string& name) {
 }
 
 /// Of codecs in the order in which they are written: transpositions, then bytes, then what compresses these.
-ChunkEncoding encoding_of(const json& codecs, std::size_t axes, std::size_t scalar_bytes,
+ChunkEncoding encoding_of(const json& codecs, std::size_t axes, std::size_t element_bytes,
                           const std::string& path) {
   ChunkEncoding encoding;
   encoding.order.resize(axes);
@@ -123,7 +123,7 @@ ChunkEncoding encoding_of(const json& codecs, std::size_t axes, std::size_t scal
     if (codec.name == "transpose") {
       encoding.order = transposed(encoding.order, codec.configuration.at("order"), path);
     } else if (codec.name == "bytes") {
-      encoding.big_endian = is_big_endian(codec.configuration, scalar_bytes, path);
+      encoding.big_endian = is_big_endian(codec.configuration, element_bytes, path);
       are_bytes = true;
     } else if (codec.name == "crc32c" || codec.name == "numcodecs.crc32c") {
       encoding.checksum = true;
@@ -152,15 +152,15 @@ Shards shards_of(const json& configuration, const std::string& path) {
 }
 
 void read_codecs(const json& codecs, ZarrArray& array, const std::string& path) {
-  const std::size_t axes = array.shape.size(), scalar_bytes = bytes_per_scalar(array.type);
+  const std::size_t axes = array.shape.size(), element_bytes = stored_bytes(array.element);
   const bool in_shards = codecs.size() == 1 && extension_of(codecs.at(0)).name == "sharding_indexed";
   if (!in_shards) {
-    array.encoding = encoding_of(codecs, axes, scalar_bytes, path);
+    array.encoding = encoding_of(codecs, axes, element_bytes, path);
     return;
   }
   const json configuration = extension_of(codecs.at(0)).configuration;
   array.shards = shards_of(configuration, path);
-  array.encoding = encoding_of(configuration.at("codecs"), axes, scalar_bytes, path);
+  array.encoding = encoding_of(configuration.at("codecs"), axes, element_bytes, path);
   const std::vector<std::int64_t> lengths =
       std::exchange(array.chunks, zarr_lengths(configuration.at("chunk_shape"), path));
   for (std::size_t axis = 0; axis < lengths.size(); ++axis) {
@@ -198,12 +198,12 @@ ZarrArray array_of_version_3(const json& metadata, const std::string& path) {
   check_names(metadata, path);
   ZarrArray array;
   array.shape = zarr_lengths(metadata.at("shape"), path);
-  array.type = scalar_type_of(metadata.at("data_type"), path);
+  array.element = element_of(metadata.at("data_type"), path);
   array.chunks = chunk_lengths_of(metadata.at("chunk_grid"), path);
   if (array.shape.size() > most_zarr_axes)
     fail_zarr(path, fmt::format("it has {} axes; up to {} are read", array.shape.size(), most_zarr_axes));
   array.names = chunk_names_of(metadata.at("chunk_key_encoding"), path);
-  array.fill = zarr_fill_value(metadata.at("fill_value"), array.type, path);
+  array.fill = zarr_fill_value(metadata.at("fill_value"), array.element, path);
   read_codecs(metadata.at("codecs"), array, path);
   return array;
 }

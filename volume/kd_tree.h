@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A volume's cells in one convex box per rank, as a partition divides them, and the order in which the boxes
-// cover each other. (Bentley 1975; for sort-last volume rendering Ma, TileWorker, Hansen, Krogh 1994.)
+// cover each other. (Bentley 1975; for sort-last volume rendering Ma, Painter, Hansen, Krogh 1994.)
 #pragma once
 
 #include <array>

@@ -23,7 +23,7 @@ std::uint64_t usable_memory();
 std::uint64_t available_memory();
 
 /// Of one of `ranks` ranks on this machine. Bricks take half as much again as the texels that they show.
-/// With a limit of time clients are pending clients to each other, and no one of them gets more than half.
+/// With a limit of time, clients are independent of each other, and none of them gets more than half.
 ClientLimits client_limits(int ranks, std::chrono::milliseconds image_time);
 
 }  // namespace understudy::compositor

@@ -25,7 +25,7 @@ constexpr int max_ray_offsets = 1 << 20;
 constexpr std::size_t max_integrals = 4096;  ///< pixels of one question
 constexpr double max_integral_ms = 2000;
 constexpr std::uint64_t max_image_samples =
-    std::uint64_t(1) << 41;  ///< of nodes that pending clients share: 8192 x 8192 pixels of 32768 each
+    std::uint64_t(1) << 41;  ///< of nodes that independent clients share: 8192 x 8192 pixels of 32768 each
 constexpr std::size_t max_table_entries = std::size_t(1) << 20;
 constexpr int max_kept_pre_integration_tables = 4;  ///< of one application, on each node: 16 MiB each at most
 
@@ -49,7 +49,7 @@ constexpr milliseconds unwanted_patience{10'000};  ///< at a request whose appli
 constexpr int max_unwanted_ms = 60'000;            ///< what rank 0 tells of that at most
 constexpr milliseconds reply_patience{30'000};     ///< an answer to anything but a request for an image
 constexpr milliseconds render_patience{20'000};    ///< an image
-constexpr milliseconds image_time{4'000};     ///< of nodes that pending clients share: what one may take of it
+constexpr milliseconds image_time{4'000};     ///< of nodes that independent clients share: the longest image
 constexpr milliseconds short_request{20};     ///< after which a client need not rest, unless it was refused
 constexpr milliseconds active_within{2'000};  ///< others whose requests are so recent have a share of the nodes
 constexpr int rest_for_use = 2;               ///< times what others have used a client may rest for them

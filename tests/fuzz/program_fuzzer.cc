@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs that nobody wrote: they are refused, or what is found of them is consistent. The first byte chooses
-// the GL server.
+// Random shader programs: each is refused, or the results of its analysis are consistent. The first byte
+// chooses the shader stage.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

@@ -107,87 +107,87 @@ struct Row {
 
 constexpr std::array rows{
     Row{{"-n,--nodes", "UNDERSTUDY_NODES", "N", "0",
-         "render on N MPI ranks of this machine; 0 renders inside the viewer, on threads"},
+         "number of MPI ranks of this machine to render on; 0 (default) renders inside the viewer, on threads"},
         set_number<&Options::nodes, 0, max_nodes>},
     Row{{"--connect", "UNDERSTUDY_CONNECT", "WHERE", "",
-         "render on the node group of `understudy serve`: its socket, or HOST:PORT on another machine"},
+         "render on the nodes of `understudy serve`: its socket, or HOST:PORT on another machine"},
         set_text<&Options::connect>},
     Row{{"--exchange", "UNDERSTUDY_EXCHANGE", "serial|tree|direct-send|binary-swap|radix-k|auto", "auto",
-         "how the images of the nodes are composited; auto: the cheapest way for each image by the measured "
-         "cost of messages and bytes"},
+         "exchange that composites the images of the nodes; auto (default): for each image the cheapest one, "
+         "by the measured cost of messages and bytes"},
         set_name<&Options::exchange, compositor::set_algorithm>},
     Row{{"--pixels", "UNDERSTUDY_PIXELS", "float|half|byte", "float",
-         "how nodes exchange pixels: float (exact), half (rounded to 1/2048 of a value) or byte (to 1/510)"},
+         "pixel format of the exchange: float (exact; default), half (rounded to 1/2048 of a value) or byte "
+         "(to 1/510)"},
         set_name<&Options::pixels, compositor::set_layout>},
     Row{{"--gather", "UNDERSTUDY_GATHER", "direct|root", "direct",
-         "how the parts of an image reach the viewer: direct (each node of this machine writes its part into "
-         "the viewer's memory) or root (one node collects them)"},
+         "transfer of the finished parts of an image to the viewer: direct (each node of this machine writes "
+         "its part into the viewer's memory; default) or root (one node collects them)"},
         set_name<&Options::gather, compositor::set_gather>},
     Row{{"--overlap", "UNDERSTUDY_OVERLAP", "on|off|auto", "auto",
-         "composite parts of an image while others are rendered; auto: where it was faster"},
+         "composite parts of an image while other parts are rendered; auto (default): if that was faster so "
+         "far"},
         set_name<&Options::overlap, compositor::set_overlap>},
     Row{{"--tiles", "UNDERSTUDY_TILES", "on|off", "off",
-         "with --remote, draw everything but volumes with as many processes as there are nodes, each one tile "
-         "of the window"},
+         "with --remote, draw everything but volumes in tiles of the window, with one process for each node "
+         "and tile"},
         set_switch<&Options::tiles>},
     Row{{"--frame-latency", "UNDERSTUDY_FRAME_LATENCY", "FRAMES", "0",
-         "1 shows a moving camera the image of the frame before, so that nodes and viewer work at the same "
-         "time; once the camera rests, the viewer's window is asked to draw again"},
+         "1: while the camera moves, show the image of the previous frame, so that nodes and viewer work at "
+         "the same time; when the camera comes to rest, the viewer's window is redrawn; default: 0"},
         set_number<&Options::frame_latency, 0, 1>},
     Row{{"--verify", "UNDERSTUDY_VERIFY", "[K]", "0",
-         "compare every K-th frame whole with the viewer's own drawing; without K every frame, 0 when "
-         "something "
-         "changed that could make it wrong, -1 never"},
+         "compare every K-th frame whole with the viewer's own drawing; without K: every frame; 0 (default): "
+         "only after changes that could make an image wrong; -1: never"},
         set_number<&Options::verify, -1, 1'000'000>},
     Row{{"", "UNDERSTUDY_VERIFY_PSNR", "DB", "0",
-         "a compared image below this PSNR is refused, beside the bound that every tile must keep"},
+         "least PSNR of a compared image, in addition to the bound on every tile"},
         set_number<&Options::verify_psnr, 0, 200>},
     Row{{"--speed-guard", "UNDERSTUDY_SPEED_GUARD", "on|off", "on",
-         "let the viewer draw its volume itself where that is faster"},
+         "on (default): let the viewer draw its volume itself where that is faster"},
         set_switch<&Options::speed_guard>},
     Row{{"--report", "UNDERSTUDY_REPORT", "FILE", "", "write the figures of this run as JSON"},
         set_text<&Options::report>},
     Row{{"--explain", "UNDERSTUDY_EXPLAIN", "", "off",
-         "print what was recognised of every volume, why draws were not substituted, and what was skipped or "
-         "not, and why"},
+         "print what was recognised of every volume, why draws were not substituted, and which work was "
+         "skipped or not, and why"},
         set_switch<&Options::explain>},
     Row{{"--disable-optimization", "UNDERSTUDY_DISABLE_OPTIMIZATION", "LIST", "none",
-         "do work although it cannot change the image, to compare: all, or a list with commas of empty-bricks, "
-         "hidden-samples, dominated-samples, footprints, unchanged-images, unchanged-texels, known-colours, "
-         "absent-depth, unseen-depth"},
+         "do the named work although it cannot change the image, for comparison: all, or a comma-separated "
+         "list of empty-bricks, hidden-samples, dominated-samples, footprints, unchanged-images, "
+         "unchanged-texels, known-colours, absent-depth, unseen-depth"},
         set_disabled_optimizations},
     Row{{"--error", "UNDERSTUDY_ERROR", "E", "none",
-         "choose samples freely, as few as keep every channel of every pixel within E of the integral: a "
-         "number like 0.002 or a fraction like 0.5/255, above 0 and at most 1"},
+         "take the fewest samples that keep every channel of every pixel within E of the integral, instead "
+         "of the viewer's own samples: a number like 0.002 or a fraction like 0.5/255, above 0 and at most 1"},
         set_error},
     Row{{"--time", "UNDERSTUDY_TIME", "T", "none",
-         "choose samples freely, as many as can be cast in T per image: 30ms or 0.03s, above 0 and at most a "
-         "minute; --error takes precedence"},
+         "take as many samples as can be cast in T per image, instead of the viewer's own samples: 30ms or "
+         "0.03s, above 0 and at most a minute; --error takes precedence"},
         set_time},
     Row{{"--save-frames", "UNDERSTUDY_SAVE_FRAMES", "DIR", "",
-         "save the composited float images: frame_0001.pfm and frame_0001_alpha.pfm, …"},
+         "folder to save the composited float images in: frame_0001.pfm and frame_0001_alpha.pfm, …"},
         set_text<&Options::save_frames>},
-    Row{{"--debug-tint", "UNDERSTUDY_DEBUG_TINT", "", "off", "colour the pixels that Understudy drew"},
+    Row{{"--debug-tint", "UNDERSTUDY_DEBUG_TINT", "", "off", "tint the pixels that Understudy drew"},
         set_switch<&Options::debug_tint>},
-    Row{{"", "UNDERSTUDY_DISABLE", "", "off", "leave every call to the real OpenGL"},
+    Row{{"", "UNDERSTUDY_DISABLE", "", "off", "pass every call to the real OpenGL"},
         set_switch<&Options::disable>},
     Row{{"--chain", "UNDERSTUDY_CHAIN", "TEXT", "track volume driver",
-         "the stream processing units, first to last, with their options, or @FILE.json; `understudy units` "
-         "lists them"},
+         "stream processing units (SPUs), first to last, with their options, or @FILE.json; for a list: "
+         "understudy units"},
         set_text<&Options::chain>},
     Row{{"--server-opengl", "UNDERSTUDY_SERVER_OPENGL", "NAME", "auto",
-         "the OpenGL library of --remote and of traces: egl (without a window system), osmesa (on the CPU, one "
-         "colour buffer), or auto: OSMesa where EGL makes no context"},
+         "OpenGL library of GL servers and of replayed traces: egl (without a window system), osmesa (on the "
+         "CPU, one colour buffer), or auto (default): EGL, or OSMesa if EGL cannot create a context"},
         set_server_opengl},
     Row{{"--sandbox", "UNDERSTUDY_SANDBOX", "auto|off", "auto",
-         "with --remote, what draws for a viewer may open no file, start no program and make no connection, as "
-         "far "
-         "as the kernel has seccomp and Landlock (see `understudy doctor`); off for drivers that need more"},
+         "auto (default): the process that executes a viewer's calls under --remote cannot open files, start "
+         "programs or make connections, if the kernel has seccomp and Landlock (see `understudy doctor`); "
+         "off: for drivers that need more"},
         set_sandbox},
-    Row{{"", "UNDERSTUDY_RUN_DIR", "DIR", "", "the launcher's folder for this run (set by `understudy run`)"},
+    Row{{"", "UNDERSTUDY_RUN_DIR", "DIR", "", "folder of the launcher for this run (set by `understudy run`)"},
         set_text<&Options::run_dir>},
-    Row{{"", "UNDERSTUDY_REMOTE", "PATH", "",
-         "where the GL server of `understudy run --remote` is (set by it)"},
+    Row{{"", "UNDERSTUDY_REMOTE", "PATH", "", "socket of the GL server (set by `understudy run --remote`)"},
         set_text<&Options::remote>},
 };
 

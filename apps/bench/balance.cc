@@ -145,14 +145,15 @@ bench::TraceScene scene_of(const Settings& settings) {
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App app{"plays one scene under each way to balance its ranks"};
-  app.add_option("scene", settings.scene, "what happens")->required()->check(CLI::IsMember(scenes));
-  app.add_option("volumes", settings.volumes, "files; several: one after the other")->required();
+  CLI::App app{"Renders one scene with each method of load balancing between ranks."};
+  app.set_help_flag("-h,--help", "print this help and exit");
+  app.add_option("scene", settings.scene, "scene to render")->required()->check(CLI::IsMember(scenes));
+  app.add_option("volumes", settings.volumes, "volume files; several are shown one after another")->required();
   app.add_option("--table", settings.table, "transfer function: " + volume::built_in_control_points());
-  app.add_option("--ranks", settings.ranks)->check(CLI::Range(1, 64));
-  app.add_option("--pixels", settings.pixels, "edge of the image")->check(CLI::Range(16, 4096));
-  app.add_option("--images", settings.images)->check(CLI::Range(10, 10000));
-  app.add_option("--seed", settings.seed, "of the noise in times");
+  app.add_option("--ranks", settings.ranks, "number of ranks")->check(CLI::Range(1, 64));
+  app.add_option("--pixels", settings.pixels, "edge of the image, in pixels")->check(CLI::Range(16, 4096));
+  app.add_option("--images", settings.images, "number of images")->check(CLI::Range(10, 10000));
+  app.add_option("--seed", settings.seed, "seed of the noise in the times");
   CLI11_PARSE(app, argc, argv);
   try {
     bench::TracePlayer player(scene_of(settings));

@@ -114,8 +114,10 @@ void measure(const char* place, int side, int rounds) {
 
 int main(int argc, char** argv) {
   int rounds = 31;
-  CLI::App app{"times blending on one core"};
-  app.add_option("--rounds", rounds, "of which the median counts")->check(CLI::Range(1, 10000));
+  CLI::App app{"Times blending on one core."};
+  app.set_help_flag("-h,--help", "print this help and exit");
+  app.add_option("--rounds", rounds, "number of rounds, of which the median counts")
+      ->check(CLI::Range(1, 10000));
   CLI11_PARSE(app, argc, argv);
   try {
     measure("cache", 128, rounds);

@@ -41,7 +41,7 @@ Ends connected(bool plain) {
   const Deadline deadline = Clock::now() + std::chrono::seconds(10);
   const FileDescriptor listening = listen_at(TcpAddress{"127.0.0.1", 0});
   Ends ends{{connect_to(own_address(listening.get()), deadline), {}}, {}};
-  if (!wait_until_ready(listening.get(), POLLIN, deadline)) throw std::runtime_error("nobody connects");
+  if (!wait_until_ready(listening.get(), POLLIN, deadline)) throw std::runtime_error("no client connects");
   ends.server.socket =
       FileDescriptor(::accept4(listening.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
   set_connection_options(ends.server.socket.get());
@@ -86,9 +86,10 @@ nlohmann::json turn(bool plain, Bytes noise, int messages) {
 int main(int argc, char** argv) {
   int turns = 5;
   int messages = 4;
-  CLI::App app("What encryption costs a connection over TCP.");
-  app.add_option("--turns", turns)->capture_default_str();
-  app.add_option("--messages", messages, "of 64 MiB, in each turn")->capture_default_str();
+  CLI::App app("Measures the cost of encryption on a connection over TCP.");
+  app.set_help_flag("-h,--help", "print this help and exit");
+  app.add_option("--turns", turns, "number of turns, encrypted and unencrypted")->capture_default_str();
+  app.add_option("--messages", messages, "number of messages of 64 MiB in each turn")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   std::vector<std::byte> noise(message_bytes);
   std::generate(noise.begin(), noise.end(),

@@ -220,7 +220,7 @@ std::vector<std::byte> read(const std::string& file, std::size_t count) {
   std::vector<std::byte> bytes(count);
   std::ifstream in(file, std::ios::binary);
   if (!in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(count)))
-    throw std::runtime_error(fmt::format("{} does not hold {} bytes", file, count));
+    throw std::runtime_error(fmt::format("{} does not contain {} bytes", file, count));
   return bytes;
 }
 
@@ -310,14 +310,18 @@ void run(const Settings& settings, Communicator& communicator) {
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App app{"times exchanges of partial images, and IceT's: one rank of an MPI job"};
-  app.add_option("volume", settings.file, "raw bytes, x fastest")->required()->check(CLI::ExistingFile);
-  app.add_option("--side", settings.side, "voxels along each axis")->check(CLI::Range(8, 1024));
-  app.add_option("--pixels", settings.pixels, "edges of the images")
+  CLI::App app{"Times exchanges of partial images, by Understudy and by IceT. Runs as one rank of an MPI job."};
+  app.set_help_flag("-h,--help", "print this help and exit");
+  app.add_option("volume", settings.file, "volume file: raw bytes, x fastest")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("--side", settings.side, "number of voxels along each axis")->check(CLI::Range(8, 1024));
+  app.add_option("--pixels", settings.pixels, "edges of the images, in pixels")
       ->delimiter(',')
       ->check(CLI::Range(1, 8192));
-  app.add_option("--rounds", settings.rounds, "of which the median counts")->check(CLI::Range(1, 10000));
-  app.add_option("--only", settings.only, "these ways, as they are printed");
+  app.add_option("--rounds", settings.rounds, "number of rounds, of which the median counts")
+      ->check(CLI::Range(1, 10000));
+  app.add_option("--only", settings.only, "time only these methods, named as in the output");
   CLI11_PARSE(app, argc, argv);
   compositor::MpiCommunicator communicator(argc, argv);
   try {

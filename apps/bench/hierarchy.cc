@@ -61,15 +61,17 @@ std::size_t zstd_bytes(const std::vector<std::byte>& scalars, int level) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Times the making and the reading of hierarchical volumes."};
+  CLI::App app{"Times writing and reading hierarchical volumes."};
+  app.set_help_flag("-h,--help", "print this help and exit");
   std::string name;
   double max_error = 0;
   int turns = 3;
   bool packs = false;
-  app.add_option("VOLUME", name)->required();
-  app.add_option("--max-error", max_error);
-  app.add_option("--turns", turns);
-  app.add_flag("--zstd", packs, "also says what Zstandard makes of the scalars, at levels 3 and 19");
+  app.add_option("VOLUME", name, "volume file")->required();
+  app.add_option("--max-error", max_error, "largest change of any value of the volume; 0: lossless");
+  app.add_option("--turns", turns, "number of turns");
+  app.add_flag("--zstd", packs,
+               "also measure the size of the scalars when compressed by Zstandard at levels 3 and 19");
   CLI11_PARSE(app, argc, argv);
 
   // From memory: what is timed reads no compressed original.

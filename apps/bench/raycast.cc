@@ -84,7 +84,7 @@ std::vector<std::byte> texels_of(const Settings& settings) {
   const std::size_t count = size[0] * size[1] * size[2];
   std::vector<std::byte> bytes(in_file[0] * in_file[1] * in_file[2]);
   if (!in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size())))
-    throw std::runtime_error(fmt::format("{} does not hold {} bytes", settings.file, bytes.size()));
+    throw std::runtime_error(fmt::format("{} does not contain {} bytes", settings.file, bytes.size()));
   if (factor > 1) {
     std::vector<std::byte> large(count);
     for (std::size_t z = 0; z < size[2]; ++z)
@@ -281,7 +281,8 @@ nlohmann::ordered_json measure(const Settings& settings) {
     std::ifstream in(settings.judged, std::ios::binary);
     if (!in.read(reinterpret_cast<char*>(image.rgba.data()),
                  std::streamsize(sizeof(float) * image.rgba.size())))
-      throw std::runtime_error(fmt::format("{} does not hold {} floats", settings.judged, image.rgba.size()));
+      throw std::runtime_error(
+          fmt::format("{} does not contain {} floats", settings.judged, image.rgba.size()));
   }
   const double samples = double(counts.samples);
   nlohmann::ordered_json figures{{"ns", 1e9 * median(processor) / samples},
@@ -300,40 +301,44 @@ nlohmann::ordered_json measure(const Settings& settings) {
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App app{"times ray casting on one volume of bytes and measures its error"};
-  CLI::Option* file = app.add_option("volume", settings.file, "raw bytes, x fastest")->check(CLI::ExistingFile);
-  app.add_option("--noise", settings.noise, "bytes of a hash with this seed, instead of a file")
+  CLI::App app{"Times ray casting of one volume of bytes, and measures its error."};
+  app.set_help_flag("-h,--help", "print this help and exit");
+  CLI::Option* file =
+      app.add_option("volume", settings.file, "volume file: raw bytes, x fastest")->check(CLI::ExistingFile);
+  app.add_option("--noise", settings.noise, "use the bytes of a hash with this seed, instead of a file")
       ->excludes(file);
-  app.add_option("--size", settings.size, "voxels along x, y and z")->delimiter('x');
-  app.add_option("--magnify", settings.magnify, "the file has so many times fewer voxels along every axis")
+  app.add_option("--size", settings.size, "number of voxels along x, y and z")->delimiter('x');
+  app.add_option("--magnify", settings.magnify, "magnify the file's volume by this factor along every axis")
       ->check(CLI::Range(1, 16));
-  app.add_flag("--unjudged", settings.unjudged, "times alone");
+  app.add_flag("--unjudged", settings.unjudged, "measure times only");
   app.add_option("--table", settings.table, "transfer function")
       ->check(CLI::IsMember({"dense", "sparse", "clear"}));
-  app.add_option("--method", settings.method, "what samples stand for")
+  app.add_option("--method", settings.method, "classification of samples")
       ->transform(
           CLI::CheckedTransformer(std::map<std::string, Method>{{"post-classified", Method::post_classified},
                                                                 {"pre-integrated", Method::pre_integrated},
                                                                 {"adaptive", Method::adaptive}}));
-  app.add_option("--surfaces", settings.surfaces, "values of iso-surfaces; the last is opaque")
+  app.add_option("--surfaces", settings.surfaces, "values of iso-surfaces, of which the last one is opaque")
       ->delimiter(',')
       ->check(CLI::Range(0.0, 1.0));
-  app.add_flag("--light", settings.light, "a light on samples and surfaces");
-  app.add_option("--type", settings.type, "kind of voxels that the bytes become")
+  app.add_flag("--light", settings.light, "light samples and surfaces");
+  app.add_option("--type", settings.type, "type of the voxels that the bytes are converted to")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, TexelType>{{"u8", TexelType::u8}, {"u16", TexelType::u16}}));
-  app.add_option("--pixels", settings.pixels, "edge of the image")->check(CLI::Range(1, 16384));
-  app.add_option("--threads", settings.threads, "most threads")->check(CLI::Range(1, 1024));
-  app.add_option("--frames", settings.frames, "images, of whose times the median counts")
+  app.add_option("--pixels", settings.pixels, "edge of the image, in pixels")->check(CLI::Range(1, 16384));
+  app.add_option("--threads", settings.threads, "maximum number of threads")->check(CLI::Range(1, 1024));
+  app.add_option("--frames", settings.frames, "number of images, of whose times the median counts")
       ->check(CLI::Range(1, 10000));
-  app.add_option("--backend", settings.backend, "who casts the rays: gl on EGL, gl-osmesa on OSMesa")
+  app.add_option("--backend", settings.backend,
+                 "backend that casts the rays: cpu, or OpenGL on EGL (gl) or on OSMesa (gl-osmesa)")
       ->check(CLI::IsMember({"cpu", "gl", "gl-osmesa"}));
-  app.add_option("--gpu-memory", settings.gpu_memory.bytes, "bytes of texels that OpenGL may hold at a time");
+  app.add_option("--gpu-memory", settings.gpu_memory.bytes, "graphics memory for texels, in bytes");
   app.add_option("--judge", settings.judged,
-                 "a file with another renderer's image, premultiplied RGBA floats, rows bottom up: errors "
-                 "are its own")
+                 "measure the errors of another renderer's image in this file, of premultiplied RGBA floats "
+                 "with rows from bottom to top")
       ->check(CLI::ExistingFile);
-  app.add_option("--epsilon", settings.epsilon, "a ray ends when less light than this comes through")
+  app.add_option("--epsilon", settings.epsilon,
+                 "early ray termination: a ray ends where its remaining transparency is below this value")
       ->check(CLI::Range(0.0, 1.0));
   CLI11_PARSE(app, argc, argv);
   if (settings.file.empty() && !settings.noise) {

@@ -261,14 +261,17 @@ void run(const Settings& settings) {
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App app{"compares the model of images on many ranks with real ranks on this machine"};
-  app.add_option("--most-ranks", settings.most_ranks)->check(CLI::Range(1, 64));
-  app.add_option("--side", settings.side, "voxels along each axis")->check(CLI::Range(16, 512));
-  app.add_option("--pixels", settings.pixels, "edge of the image")->check(CLI::Range(16, 4096));
-  app.add_option("--images", settings.images, "of each kind; the fastest counts")->check(CLI::Range(1, 1000));
-  app.add_option("--rounds", settings.rounds, "in which all ways follow each other")->check(CLI::Range(1, 100));
-  app.add_option("--cores", settings.cores, "that the ranks share")->check(CLI::Range(1, 1024));
-  app.add_option("--costs", settings.costs, "what understudy-bench-messages printed");
+  CLI::App app{"Compares the model of images on many ranks with real ranks on this machine."};
+  app.set_help_flag("-h,--help", "print this help and exit");
+  app.add_option("--most-ranks", settings.most_ranks, "largest number of ranks")->check(CLI::Range(1, 64));
+  app.add_option("--side", settings.side, "number of voxels along each axis")->check(CLI::Range(16, 512));
+  app.add_option("--pixels", settings.pixels, "edge of the image, in pixels")->check(CLI::Range(16, 4096));
+  app.add_option("--images", settings.images, "number of images of each kind, of which the fastest counts")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--rounds", settings.rounds, "number of rounds; each times all methods one after another")
+      ->check(CLI::Range(1, 100));
+  app.add_option("--cores", settings.cores, "number of cores that the ranks share")->check(CLI::Range(1, 1024));
+  app.add_option("--costs", settings.costs, "message costs, as printed by understudy-bench-messages");
   CLI11_PARSE(app, argc, argv);
   try {
     run(settings);

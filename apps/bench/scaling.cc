@@ -191,21 +191,29 @@ nlohmann::ordered_json simulate(const Settings& settings, const Scene& scene, in
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App app{"models images of a dense cube, or of a volume in a file, on 1 to 1,024 ranks"};
-  app.add_option("--side", settings.side, "voxels along each axis")->check(CLI::Range(8, 8192));
-  CLI::Option* weak = app.add_flag("--weak", settings.weak, "that many for each rank");
-  app.add_flag("--growing-image", settings.growing_image, "with the volume")->needs(weak);
-  app.add_option("--pixels", settings.pixels, "edge of the image")->check(CLI::Range(16, 8192));
-  app.add_option("--most-ranks", settings.most_ranks, "powers of two up to here")->check(CLI::Range(1, 1024));
-  app.add_option("--cast-ranks", settings.cast_ranks, "up to so many, boxes are really cast");
-  app.add_option("--volume", settings.volume, "a file, always cast, instead of the cube")->excludes(weak);
-  app.add_option("--table", settings.table, "its transfer function: " + volume::built_in_control_points());
-  app.add_flag("--by-cost", settings.by_cost, "boxes that cost the same, instead of as many blocks");
-  app.add_option("--sample", settings.costs.per_sample, "seconds, of a node's whole processor");
-  app.add_option("--latency", settings.costs.latency, "L, seconds");
-  app.add_option("--overhead", settings.costs.overhead, "o, seconds a message, at either end");
-  app.add_option("--gap", settings.costs.gap, "g, seconds between messages");
-  app.add_option("--gigabits", settings.gigabits, "a second, of each node's line: 1/G")
+  CLI::App app{"Models images of a dense cube, or of a volume file, on 1 to 1,024 ranks."};
+  app.set_help_flag("-h,--help", "print this help and exit");
+  app.add_option("--side", settings.side, "number of voxels along each axis")->check(CLI::Range(8, 8192));
+  CLI::Option* weak =
+      app.add_flag("--weak", settings.weak,
+                   "weak scaling: --side is for one rank, and the volume grows with the number of ranks");
+  app.add_flag("--growing-image", settings.growing_image, "let the image grow with the volume")->needs(weak);
+  app.add_option("--pixels", settings.pixels, "edge of the image, in pixels")->check(CLI::Range(16, 8192));
+  app.add_option("--most-ranks", settings.most_ranks, "model powers of two up to this number of ranks")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--cast-ranks", settings.cast_ranks,
+                 "measure the casting of boxes up to this number of ranks, instead of modelling it");
+  app.add_option("--volume", settings.volume, "volume file, which is always cast, instead of the cube")
+      ->excludes(weak);
+  app.add_option("--table", settings.table,
+                 "transfer function of the volume: " + volume::built_in_control_points());
+  app.add_flag("--by-cost", settings.by_cost, "cut boxes of equal cost, instead of equal numbers of blocks");
+  app.add_option("--sample", settings.costs.per_sample, "time per sample on all cores of a node, in seconds");
+  app.add_option("--latency", settings.costs.latency, "latency L of a message, in seconds");
+  app.add_option("--overhead", settings.costs.overhead, "overhead o of a message at either end, in seconds");
+  app.add_option("--gap", settings.costs.gap, "gap g between messages, in seconds");
+  app.add_option("--gigabits", settings.gigabits,
+                 "bandwidth 1/G of each node's network connection, in gigabits per second")
       ->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
   settings.costs.per_byte = 8e-9 / settings.gigabits;

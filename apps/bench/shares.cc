@@ -160,11 +160,15 @@ int main(int argc, char** argv) {
   int rounds = 3;
   double seconds = 10;
   double seconds_of_attack = 60;
-  CLI::App app("What a client gets of nodes that others ask for much.");
-  app.add_option("--socket", socket, "of understudy serve")->required();
-  app.add_option("--rounds", rounds, "in each of which all turns follow each other")->capture_default_str();
-  app.add_option("--seconds", seconds, "alone, and beside requests that are refused")->capture_default_str();
-  app.add_option("--seconds-of-attack", seconds_of_attack, "beside one that asks for as much as it may")
+  CLI::App app("Measures how many images a client gets from nodes that other clients load heavily.");
+  app.set_help_flag("-h,--help", "print this help and exit");
+  app.add_option("--socket", socket, "socket of `understudy serve`")->required();
+  app.add_option("--rounds", rounds, "number of rounds; each runs all turns one after another")
+      ->capture_default_str();
+  app.add_option("--seconds", seconds, "duration of turns alone and beside refused requests, in seconds")
+      ->capture_default_str();
+  app.add_option("--seconds-of-attack", seconds_of_attack,
+                 "duration of turns beside a client that requests as much as it may, in seconds")
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
 

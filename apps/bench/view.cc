@@ -64,13 +64,16 @@ void measure(WebClient& client, const Way& way, int images) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Turns a volume that `understudy view --web` shows, and measures from request to image."};
+  CLI::App app{
+      "Rotates a volume that `understudy view --web` shows, and measures the time from request to image."};
+  app.set_help_flag("-h,--help", "print this help and exit");
   int port = 0, images = 100, rounds = 3;
   std::string secret;
-  app.add_option("PORT", port)->required();
-  app.add_option("SECRET", secret)->required();
-  app.add_option("--images", images, "of each way in each round")->check(CLI::Range(1, 10000));
-  app.add_option("--rounds", rounds)->check(CLI::Range(1, 100));
+  app.add_option("PORT", port, "port of `understudy view --web`")->required();
+  app.add_option("SECRET", secret, "secret in the link that `understudy view` prints")->required();
+  app.add_option("--images", images, "number of images of each kind in each round")
+      ->check(CLI::Range(1, 10000));
+  app.add_option("--rounds", rounds, "number of rounds")->check(CLI::Range(1, 100));
   CLI11_PARSE(app, argc, argv);
   WebClient client(port);
   client.greet(secret);

@@ -77,22 +77,22 @@ void add_exchange_options(CLI::App& app, compositor::ExchangeSettings& exchange)
         },
         help);
   };
-  choice("--exchange", set_algorithm, "How partial images become one");
-  choice("--pixels", set_layout, "What numbers travel between ranks");
-  choice("--gather", set_gather, "How the parts of an image come to the application");
-  choice("--overlap", set_overlap, "Whether images are composited while they are drawn");
-  choice("--packed", set_packed, "Whether pixels are packed for their way");
+  choice("--exchange", set_algorithm, "algorithm that composites partial images");
+  choice("--pixels", set_layout, "format of the pixels that ranks exchange");
+  choice("--gather", set_gather, "path of the parts of an image to the application");
+  choice("--overlap", set_overlap, "composite parts of an image while others are rendered: on, off or auto");
+  choice("--packed", set_packed, "pack pixels before they are sent: on, off or auto");
 }
 
 void add_options(CLI::App& app, NodeOptions& options) {
-  app.add_option("--control", options.control, "The launcher's Unix socket for nodes")->required();
+  app.add_option("--control", options.control, "the launcher's Unix socket for nodes")->required();
   add_exchange_options(app, options.exchange);
-  app.add_option("--backend", options.backend, "Who casts the rays")
+  app.add_option("--backend", options.backend, "backend that casts the rays")
       ->check([](const std::string& name) -> std::string {
         if (volume::glsl::backend_of(name)) return {};
-        return fmt::format("'{}' is none of {}", name, volume::glsl::backend_names);
+        return fmt::format("'{}' is not one of {}", name, volume::glsl::backend_names);
       });
-  app.add_option("--gpu-memory", options.gpu_memory, "Bytes of texels in textures")
+  app.add_option("--gpu-memory", options.gpu_memory, "graphics memory for textures of volumes, in bytes")
       ->check(CLI::IsMember({"auto"}) | CLI::Range(volume::glsl::least_texture_memory, ~std::uint64_t(0)));
   app.add_option_function<std::string>(
       "--sort",
@@ -100,33 +100,35 @@ void add_options(CLI::App& app, NodeOptions& options) {
         if (!compositor::set_sort(sort, name))
           throw CLI::ValidationError("--sort", "there is no '" + name + "'");
       },
-      "Whether ranks divide volumes or images: last, first, hybrid or auto");
+      "division of the work among ranks: last, first, hybrid or auto");
   app.add_option_function<std::string>(
       "--partition",
       [&sort = options.sort](const std::string& name) {
         if (!compositor::set_partition(sort, name))
           throw CLI::ValidationError("--partition", "there is no '" + name + "'");
       },
-      "How ranks divide a volume: blocks, factors, cost or auto");
+      "partition of a volume that ranks divide: blocks, factors, cost or auto");
   app.add_option_function<std::string>(
       "--balance",
       [&balance = options.balance.balance](const std::string& name) {
         if (!compositor::set_balance(balance, name))
           throw CLI::ValidationError("--balance", "there is no '" + name + "'");
       },
-      "Who gets how much of a volume: off, muller or predicted");
-  app.add_flag("--any-file", options.any_file, "Applications may load every file that this user may read");
-  app.add_option("--data", options.data,
-                 "Folders that applications may load volumes from; none: they send them");
-  app.add_option("--image-time", options.image_ms,
-                 "Milliseconds of one image, where applications are pending clients to each other; 0: no limit")
+      "load balancing between ranks: off, muller or predicted");
+  app.add_flag("--any-file", options.any_file, "applications may load every file that this user may read");
+  app.add_option(
+      "--data", options.data,
+      "folders that applications may load volume files from; default: none, applications send their volumes");
+  app.add_option(
+         "--image-time", options.image_ms,
+         "time limit of one image, in milliseconds, for nodes that independent applications share; 0: no limit")
       ->check(CLI::NonNegativeNumber);
 }
 
 void print_move(const compositor::MoveFigures& move) {
   fmt::print(stderr,
-             "node 0: volume {}: {} planes moved, as times deviated by {:.2f}; {} blocks came here ({} bytes), "
-             "{} were here from before; {:.1f} ms\n",
+             "node 0: volume {}: moved {} planes, because times deviated by {:.2f}; received {} blocks ({} "
+             "bytes), reused {} earlier ones; {:.1f} ms\n",
              move.volume, move.planes, move.deviation, move.blocks_received, move.bytes_received,
              move.blocks_from_cache, move.ms);
   std::fflush(stderr);
@@ -183,7 +185,8 @@ int run_rank(NodeOptions& options, int argc, char** argv) {
 int main(int argc, char** argv) {
   understudy::logging::set_program("understudy-node");
   CLI::App app(
-      "One rank of Understudy's node group; `understudy serve` starts it as mpirun -n N understudy-node ...");
+      "Renders as one rank of a group of nodes. `understudy` starts it as: mpirun -n N understudy-node ...");
+  app.set_help_flag("-h,--help", "print this help and exit");
   understudy::NodeOptions options;
   understudy::add_options(app, options);
   CLI11_PARSE(app, argc, argv);

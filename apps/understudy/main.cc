@@ -45,7 +45,8 @@ int main(int argc, char** argv) try {
   CLI::App app{"Renders the volumes of unmodified OpenGL viewers by distributed ray casting.", "understudy"};
   app.formatter(std::make_shared<launcher::HelpLayout>());
   app.require_subcommand(1);
-  app.set_version_flag("--version", launcher::version_text);
+  app.set_help_flag("-h,--help", "print this help and exit");
+  app.set_version_flag("--version", launcher::version_text, "print the version and exit");
   std::function<int()> chosen;
   launcher::add_run(app, line.viewer, chosen);
   launcher::add_config(app, chosen);

@@ -135,7 +135,9 @@ void write_description(const std::string& path, const Options& options, const Sc
   if (!file)
     throw Error(
         ExitCode::bad_file,
-        fmt::format("{}: the description cannot be written; check that the folder exists and has room", path));
+        fmt::format(
+            "{}: the description cannot be written; check that the folder exists and the disk is not full",
+            path));
 }
 
 }  // namespace viewer

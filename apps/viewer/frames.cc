@@ -28,8 +28,8 @@ std::string frame_file(const std::string& folder, int frame) {
   std::filesystem::create_directories(folder, error);
   if (error)
     throw Error(ExitCode::bad_file,
-                fmt::format("{}: the folder cannot be made: {}; choose another --screenshot-frames", folder,
-                            error.message()));
+                fmt::format("{}: the folder cannot be created: {}; give another folder to --screenshot-frames",
+                            folder, error.message()));
   return (std::filesystem::path(folder) / fmt::format("frame_{:04}.png", frame)).string();
 }
 

@@ -26,7 +26,7 @@ void load_opengl_functions() {
   if (!version || !renderer || !glTexImage3D || !glUseProgram)
     throw Error(
         ExitCode::no_opengl,
-        fmt::format("OpenGL {} is too old: 2.0 is needed; update the driver or set LIBGL_ALWAYS_SOFTWARE=1",
+        fmt::format("OpenGL {} is too old, 2.0 is required; update the driver or set LIBGL_ALWAYS_SOFTWARE=1",
                     version ? version : "(none)"));
   fmt::print("OpenGL {}, {}\n", version, renderer);
 }

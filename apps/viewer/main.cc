@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
     return fail(error.code(), error.what());
   } catch (const std::bad_alloc&) {
     return fail(viewer::ExitCode::bad_file,
-                "out of memory; reduce the volume, or use --mode table instead of rgba");
+                "out of memory; downsample the volume, or use --mode table instead of rgba");
   } catch (const std::exception& error) {
     return fail(viewer::ExitCode::bad_file, error.what());
   }

@@ -112,8 +112,8 @@ Offscreen::Offscreen(const Options& options, int width, int height) {
     }
   }
   throw Error(ExitCode::no_opengl,
-              fmt::format("no OpenGL{} context without a window: none of {} EGL displays offers one; install "
-                          "libegl-mesa0 and see `eglinfo`, or draw in a window (without --offscreen)",
+              fmt::format("no OpenGL{} context without a window: none of {} EGL displays provides one; install "
+                          "libegl-mesa0 and check `eglinfo`, or draw in a window (without --offscreen)",
                           options.mode == ModeKind::core ? " 3.3 core" : "", displays.size()));
 }
 
@@ -166,9 +166,10 @@ void Offscreen::make_framebuffer(int width, int height) {
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, renderbuffers_[0]);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, renderbuffers_[1]);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    throw Error(ExitCode::no_opengl,
-                fmt::format("OpenGL offers no {}x{} framebuffer object; choose a smaller --window-size", width,
-                            height));
+    throw Error(
+        ExitCode::no_opengl,
+        fmt::format("OpenGL provides no framebuffer object of {} x {} pixels; give a smaller --window-size",
+                    width, height));
 }
 
 void Offscreen::present() {
@@ -177,9 +178,9 @@ void Offscreen::present() {
     return;
   }
   if (!eglSwapBuffers(display_, surface_))
-    throw Error(
-        ExitCode::no_opengl,
-        fmt::format("eglSwapBuffers fails with 0x{:x}; try --offscreen-surface framebuffer", eglGetError()));
+    throw Error(ExitCode::no_opengl,
+                fmt::format("eglSwapBuffers failed with error 0x{:x}; try --offscreen-surface framebuffer",
+                            eglGetError()));
 }
 
 void run_offscreen(const Options& options, Volume volume) {

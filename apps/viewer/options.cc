@@ -56,98 +56,102 @@ struct Texts {
 
 void add_volume_options(CLI::App& app, Options& options, Texts& texts) {
   app.add_option("volume", options.volume_path,
-                 "Volume file: raw voxels (name.XxYxZ, or with --size), also .gz; NRRD; NIfTI")
+                 "volume file: raw voxels (name.XxYxZ, or with --size), also as .gz; NRRD; or NIfTI")
       ->required();
-  texts.size_option =
-      app.add_option("--size", texts.size, "Voxels along x, y and z of a raw file")->type_name("X Y Z");
-  texts.type_option = app.add_option("--type", texts.type, "Voxel type of a raw file")
+  texts.size_option = app.add_option("--size", texts.size, "size of a raw file, in voxels")->type_name("X Y Z");
+  texts.type_option = app.add_option("--type", texts.type, "voxel type of a raw file")
                           ->check(CLI::IsMember({"u8", "i8", "u16", "i16", "f32"}));
-  app.add_flag("--big-endian", options.hints.big_endian, "The raw file has the most significant byte first");
+  app.add_flag("--big-endian", options.hints.big_endian,
+               "the voxels of a raw file have the most significant byte first");
   texts.spacing_option =
-      app.add_option("--spacing", texts.spacing, "Distances between voxels, instead of the file's")
+      app.add_option("--spacing", texts.spacing,
+                     "distances between voxels along x, y and z, instead of those in the file")
           ->type_name("X Y Z");
 }
 
 void add_mode_options(CLI::App& app, Options& options, Texts& texts) {
-  app.add_option("--mode", texts.mode,
-                 "rgba (colours per voxel, fixed function), table (1-D table in GLSL 1.20), core (OpenGL 3.3 "
-                 "core), time (a "
-                 "new time step every frame), bricks (many small textures), lit (directional light), preint "
-                 "(pre-integrated "
-                 "segments) or stacks (2-D textures)")
+  app.add_option(
+         "--mode", texts.mode,
+         "method of drawing the volume: rgba (colours per voxel, fixed function), table (1-D table in GLSL "
+         "1.20), core (OpenGL 3.3 core), time (a new time step every frame), bricks (many small textures), lit "
+         "(directional light), preint (pre-integrated segments) or stacks (2-D textures)")
       ->check(CLI::IsMember({"rgba", "table", "core", "time", "bricks", "lit", "preint", "stacks"}))
       ->capture_default_str();
   app.add_option(
          "--time-step", texts.step,
-         "With --mode time, what changes from frame to frame: whole (every voxel), part (those in the middle, "
-         "and only they are uploaded) or again (the same, but all are uploaded)")
+         "with --mode time, which voxels change from frame to frame: whole (all of them), part (those in the "
+         "middle, and only these are uploaded) or again (those in the middle, but all are uploaded)")
       ->check(CLI::IsMember({"whole", "part", "again"}))
       ->capture_default_str();
-  app.add_option("--operator", texts.op, "How slices are blended: over, under (front to back), max, min or add")
+  app.add_option("--operator", texts.op, "blending of slices: over, under (front to back), max, min or add")
       ->check(CLI::IsMember({"over", "under", "max", "min", "add"}))
       ->capture_default_str();
   app.add_option("--slices", options.slices,
-                 "Slices across the box's diagonal (default: one per finest voxel edge)")
+                 "number of slices across the diagonal of the box (default: one per finest voxel edge)")
       ->check(CLI::Range(1, max_slices));
-  app.add_option("--preset", texts.preset, "Transfer function by name or number:" + preset_list())
+  app.add_option("--preset", texts.preset, "transfer function, by name or number:" + preset_list())
       ->check(is_preset)
       ->capture_default_str();
-  app.add_option("--table", texts.table,
-                 "Transfer function of your own instead: a JSON file of control points, with values and "
-                 "opacities from 0 to "
-                 "1 as {\"knots\": [{\"at\": 0.2, \"colour\": [1, 0.5, 0.2], \"opacity\": 0}, ...]}")
+  app.add_option(
+         "--table", texts.table,
+         "transfer function in a JSON file, instead of a preset: control points with values and opacities from "
+         "0 to 1, as {\"knots\": [{\"at\": 0.2, \"colour\": [1, 0.5, 0.2], \"opacity\": 0}, ...]}")
       ->type_name("FILE");
 }
 
 void add_scene_options(CLI::App& app, Options& options) {
-  app.add_flag("--opaque", options.opaque_ball, "A solid ball within the volume");
+  app.add_flag("--opaque", options.opaque_ball, "draw a solid ball inside the volume");
   app.add_flag("--second", options.second_volume,
-               "The volume twice, half as large, the second in the next preset's colours");
-  app.add_flag("!--no-frame", options.frame_and_axes, "Without the box's frame and the axes");
+               "draw the volume twice, at half its size, the second time in the colours of the next preset");
+  app.add_flag("!--no-frame", options.frame_and_axes, "do not draw the frame of the box and the axes");
   app.add_flag("--write-depth", options.write_depth,
-               "Slices back to front write their depth, as those of some programs do");
-  app.add_option("--background", options.background, "Background colour, each 0 to 1")
+               "write the depth of slices that are drawn back to front, as some programs do");
+  app.add_option("--background", options.background, "background colour, with components from 0 to 1")
       ->check(number_between(0.0, 1.0))
       ->type_name("R G B");
 }
 
 void add_camera_options(CLI::App& app, Options& options) {
-  app.add_option("--azimuth", options.camera.azimuth, "Degrees around the z axis")
+  app.add_option("--azimuth", options.camera.azimuth, "azimuth of the camera around the z axis, in degrees")
       ->check(number_between(-1e6, 1e6))
       ->capture_default_str();
-  app.add_option("--elevation", options.camera.elevation, "Degrees above the xy plane")
+  app.add_option("--elevation", options.camera.elevation,
+                 "elevation of the camera above the xy plane, in degrees")
       ->check(number_between(-90.0, 90.0))
       ->capture_default_str();
-  app.add_option("--distance", options.camera.distance, "From the eye to the box's centre, in box diagonals")
+  app.add_option("--distance", options.camera.distance,
+                 "distance from the eye to the centre of the box, in box diagonals")
       ->check(number_between(min_distance, max_distance))
       ->capture_default_str();
-  app.add_option("--field-of-view", options.camera.field_of_view, "Degrees over the image's shorter side")
+  app.add_option("--field-of-view", options.camera.field_of_view,
+                 "field of view across the shorter side of the image, in degrees")
       ->check(number_between(1.0, 170.0))
       ->capture_default_str();
-  app.add_flag("--ortho", options.camera.orthographic, "Orthographic instead of perspective");
-  app.add_option("--window-size", options.window_size, "Image in pixels")
+  app.add_flag("--ortho", options.camera.orthographic,
+               "use an orthographic projection instead of a perspective one");
+  app.add_option("--window-size", options.window_size, "size of the image, in pixels")
       ->check(CLI::Range(1, max_window_edge))
       ->type_name("W H")
       ->capture_default_str();
 }
 
 void add_output_options(CLI::App& app, Options& options, Texts& texts) {
-  app.add_flag("--offscreen", options.offscreen, "Draw with EGL, without a window or a display");
-  app.add_option("--offscreen-surface", texts.surface, "What to draw into off screen")
+  app.add_flag("--offscreen", options.offscreen, "draw with EGL, without a window or a display");
+  app.add_option("--offscreen-surface", texts.surface, "surface to draw into with --offscreen")
       ->check(CLI::IsMember({"any", "pbuffer", "framebuffer"}))
       ->capture_default_str();
-  app.add_option(
-         "--frames", options.frames,
-         "Frames to draw before leaving (default: 1 off screen or with a screenshot or description, otherwise "
-         "until the window is closed)")
+  app.add_option("--frames", options.frames,
+                 "exit after this many frames (default: 1 off screen or with a screenshot or description, "
+                 "otherwise when the window is closed)")
       ->check(CLI::Range(1, max_frames));
-  app.add_option("--orbit", options.orbit, "Degrees of azimuth added from each frame to the next")
+  app.add_option("--orbit", options.orbit, "degrees of azimuth to turn from one frame to the next")
       ->check(number_between(-1e6, 1e6));
-  app.add_option("--screenshot", options.screenshot, "Write the last frame as PNG");
-  app.add_option("--screenshot-frames", options.screenshot_folder,
-                 "Write every frame as frame_NNNN.png into a folder");
-  app.add_option("--describe", options.description, "Write as JSON what is needed to recompute the last frame");
-  app.add_flag("--print-times", options.print_times, "Print the milliseconds of each frame, and their median");
+  app.add_option("--screenshot", options.screenshot, "PNG file for the last frame");
+  app.add_option("--screenshot-frames", options.screenshot_folder, "folder for all frames, as frame_NNNN.png");
+  app.add_option("--describe", options.description,
+                 "JSON file for the data that are needed to recompute the last frame");
+  app.add_flag("--print-times", options.print_times,
+               "print the time of each frame, and the median, in milliseconds");
 }
 
 void take(const Texts& texts, Options& options) {
@@ -177,6 +181,7 @@ void take(const Texts& texts, Options& options) {
 std::optional<int> parse_command_line(int argc, const char* const* argv, Options& options) {
   CLI::App app{"Shows a volume as slices through textures, in a window or off screen."};
   app.name("understudy-viewer");
+  app.set_help_flag("-h,--help", "print this help and exit");
   Texts texts;
   add_volume_options(app, options, texts);
   add_mode_options(app, options, texts);
@@ -184,9 +189,9 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
   add_camera_options(app, options);
   add_output_options(app, options, texts);
   app.footer(
-      "Drag with the left button to rotate, with the right to zoom (or turn the wheel). Keys: 1 to 5 presets,\n"
-      "o orthographic or perspective, q or Esc quits.\n"
-      "Exit status: 0 done, 1 a file is missing, damaged or does not fit, 2 wrong options, 3 no OpenGL.");
+      "Drag with the left mouse button to rotate, and with the right one (or turn the wheel) to zoom. Keys:\n"
+      "1 to 5 select a preset, o toggles orthographic projection, q and Esc quit.\n"
+      "Exit status: 0 success, 1 a file is missing, damaged or unsuitable, 2 wrong options, 3 no OpenGL.");
 
   try {
     app.parse(argc, argv);

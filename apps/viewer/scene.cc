@@ -20,7 +20,7 @@ void report(const VolumeFacts& volume, const Texels& texels) {
              volume.value_at_1);
   if (volume.not_finite > 0)
     fmt::print(stderr,
-               "understudy-viewer: warning: {}: {} of {} voxels are NaN or infinite and are shown as empty\n",
+               "understudy-viewer: warning: {}: {} of {} voxels are NaN or infinite, and are shown as empty\n",
                volume.file, volume.not_finite, volume.size[0] * volume.size[1] * volume.size[2]);
 }
 
@@ -148,7 +148,7 @@ DrawnFrame Scene::draw(const Camera& camera, int width, int height) {
 
   if (const GLenum error = glGetError(); error != GL_NO_ERROR)
     throw Error(ExitCode::no_opengl,
-                fmt::format("OpenGL reports error 0x{:x} while drawing; try another --mode", error));
+                fmt::format("OpenGL reported error 0x{:x} while drawing; try another --mode", error));
   return frame;
 }
 

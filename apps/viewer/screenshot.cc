@@ -33,9 +33,11 @@ void write_png(const Image& image, const std::string& path) {
   png.height = static_cast<png_uint_32>(image.height);
   png.format = PNG_FORMAT_RGB;
   if (!png_image_write_to_file(&png, path.c_str(), 0, image.rgb.data(), 0, nullptr))
-    throw Error(ExitCode::bad_file,
-                fmt::format("{}: the image cannot be written: {}; check that the folder exists and has room",
-                            path, png.message));
+    throw Error(
+        ExitCode::bad_file,
+        fmt::format(
+            "{}: the image cannot be written: {}; check that the folder exists and the disk is not full", path,
+            png.message));
 }
 
 }  // namespace viewer

@@ -3,7 +3,8 @@
 
 namespace understudy::spu {
 
-constinit const UnitDescription driver_description{
-    .name = "driver", .help = "the real OpenGL; every chain ends in it", .position = UnitPosition::last};
+constinit const UnitDescription driver_description{.name = "driver",
+                                                   .help = "calls the real OpenGL; the last unit of a chain",
+                                                   .position = UnitPosition::last};
 
 }  // namespace understudy::spu

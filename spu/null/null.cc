@@ -18,7 +18,7 @@ void Null::fill(Phase, DispatchTable& table) {
 
 constinit const UnitDescription null_description{
     .name = "null",
-    .help = "discards every call: results are 0, what OpenGL would write stays untouched",
+    .help = "discards every call: results are 0, and memory that OpenGL would write to stays unchanged",
     .make = [](const UnitPlace&) -> std::unique_ptr<Unit> { return std::make_unique<Null>(); }};
 
 }  // namespace understudy::spu

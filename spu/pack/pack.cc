@@ -30,12 +30,13 @@ struct Packed {
   }
 };
 
-constexpr UnitOption pack_options[] = {{.name = "block",
-                                        .type = OptionType::integer,
-                                        .fallback = "64",
-                                        .low = 1,
-                                        .high = 65536,
-                                        .help = "KiB of calls that are handed on together at most"}};
+constexpr UnitOption pack_options[] = {
+    {.name = "block",
+     .type = OptionType::integer,
+     .fallback = "64",
+     .low = 1,
+     .high = 65536,
+     .help = "largest size of the records that are passed on together, in KiB"}};
 
 }  // namespace
 
@@ -84,7 +85,7 @@ std::uint64_t Pack::hand_on(const PackedCall* last) {
 
 constinit const UnitDescription pack_description{
     .name = "pack",
-    .help = "turns calls into records, for unpack or remote behind it",
+    .help = "encodes calls into records, for unpack or remote after it",
     .options = pack_options,
     .leads_to = "unpack",
     .or_leads_to = "remote",

@@ -5,7 +5,7 @@ namespace understudy::spu {
 
 constinit const UnitDescription pass_description{
     .name = "pass",
-    .help = "leaves every call to the next unit, at no cost",
+    .help = "passes every call to the next unit, at no cost",
     .position = UnitPosition::repeatable,
     .make = [](const UnitPlace&) -> std::unique_ptr<Unit> { return std::make_unique<Pass>(); }};
 

@@ -69,12 +69,11 @@ void Perf::abandon() {
 
 namespace {
 
-constexpr UnitOption perf_options[] = {{.name = "file",
-                                        .type = OptionType::file,
-                                        .fallback = "",
-                                        .help = "the table goes here, as JSON when the name ends in .json; "
-                                                "without a file to the standard error output "
-                                                "at the end"}};
+constexpr UnitOption perf_options[] = {
+    {.name = "file",
+     .type = OptionType::file,
+     .fallback = "",
+     .help = "file for the table, as JSON if its name ends in .json; default: standard error"}};
 
 }  // namespace
 

@@ -90,21 +90,21 @@ constexpr UnitOption print_options[] = {
     {.name = "file",
      .type = OptionType::file,
      .fallback = "",
-     .help = "the lines go here; without a file to the standard error output"},
+     .help = "file for the lines; default: standard error"},
     {.name = "frames",
      .type = OptionType::range,
      .fallback = "1-",
-     .help = "the frames that are printed, from 1; the others cost nothing"},
+     .help = "frames to print, counted from 1; other frames cost nothing"},
     {.name = "calls",
      .type = OptionType::text,
      .fallback = "*",
-     .help = "the commands that are printed, as shell patterns with spaces between: \"glTex* glBind*\""}};
+     .help = "commands to print, as shell patterns separated by spaces: \"glTex* glBind*\""}};
 
 }  // namespace
 
 constinit const UnitDescription print_description{
     .name = "print",
-    .help = "writes a line for every call, with the names of its arguments and of their values",
+    .help = "prints a line for every call, with the names of its arguments and of their values",
     .options = print_options,
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
       return std::make_unique<Print>(place.chain, place.options.text("file"), place.options.range("frames"),

@@ -398,7 +398,7 @@ std::uint64_t Remote::map(const PackedCall& call, std::uint64_t bytes, const Ans
 
 constinit const UnitDescription remote_description{
     .name = "remote",
-    .help = "has a GL server elsewhere make the calls (understudy run --remote)",
+    .help = "executes the calls on a GL server (understudy run --remote)",
     .position = UnitPosition::last,
     .needs = "pack",
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {

@@ -30,13 +30,13 @@ constexpr UnitOption tile_options[] = {{.name = "part",
                                         .fallback = "0",
                                         .low = 0,
                                         .high = most_tiles - 1,
-                                        .help = "which tile, from the lowest"},
+                                        .help = "number of the tile, counted from the lowest"},
                                        {.name = "of",
                                         .type = OptionType::integer,
                                         .fallback = "2",
                                         .low = 2,
                                         .high = most_tiles,
-                                        .help = "tiles of a window"}};
+                                        .help = "number of tiles of a window"}};
 
 }  // namespace
 
@@ -74,7 +74,7 @@ std::uint64_t Tile::call(CallId call, const std::uint64_t* words) {
 
 constinit const UnitDescription tile_description{
     .name = "tile",
-    .help = "draws some rows of windows alone (of tile workers, see tiles)",
+    .help = "draws one tile of every window (in tile workers, see tiles)",
     .options = tile_options,
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
       return std::make_unique<Tile>(place.chain, shared_by_file<CompiledCalls>("").touch_scissor,

@@ -46,16 +46,17 @@ std::pair<GLint, GLint> depth_and_stencil_bits(const DispatchTable& gl) {
           ask_of_window(gl, GL_STENCIL, GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE)};
 }
 
-constexpr UnitOption tiles_options[] = {{.name = "of",
-                                         .type = OptionType::integer,
-                                         .fallback = "2",
-                                         .low = 2,
-                                         .high = most_tiles,
-                                         .help = "tiles of a window, each drawn by a process of its own"},
-                                        {.name = "gl-server",
-                                         .type = OptionType::text,
-                                         .fallback = "",
-                                         .help = "Unix socket of the GL servers that draw the others"}};
+constexpr UnitOption tiles_options[] = {
+    {.name = "of",
+     .type = OptionType::integer,
+     .fallback = "2",
+     .low = 2,
+     .high = most_tiles,
+     .help = "number of tiles of a window, each drawn by a process of its own"},
+    {.name = "gl-server",
+     .type = OptionType::text,
+     .fallback = "",
+     .help = "Unix socket of the GL servers that draw the other tiles"}};
 
 }  // namespace
 
@@ -321,7 +322,7 @@ std::vector<std::uint8_t> Tiles::shown_image() {
 
 constinit const UnitDescription tiles_description{
     .name = "tiles",
-    .help = "has each tile of a window drawn by a process of its own (understudy run --remote --tiles on)",
+    .help = "draws each tile of a window with a process of its own (understudy run --remote --tiles on)",
     .options = tiles_options,
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
       const std::string& servers = place.options.text("gl-server");

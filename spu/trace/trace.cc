@@ -21,7 +21,7 @@ struct Traced {
 constexpr UnitOption trace_options[] = {{.name = "file",
                                          .type = OptionType::file,
                                          .fallback = "trace.ust",
-                                         .help = "what `understudy replay` plays"}};
+                                         .help = "file to record in, for `understudy replay`"}};
 
 }  // namespace
 
@@ -116,7 +116,7 @@ void Trace::abandon() {
 
 constinit const UnitDescription trace_description{
     .name = "trace",
-    .help = "keeps every call in a file, for `understudy replay`",
+    .help = "records every call in a file, for `understudy replay`",
     .options = trace_options,
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
       return std::make_unique<Trace>(place.chain, shared_by_file<Recording>(place.options.text("file")));

@@ -11,13 +11,13 @@ constexpr UnitOption track_options[] = {
     {.name = "answer",
      .type = OptionType::on_off,
      .fallback = "off",
-     .help = "answer glGet itself until a call may have changed the value"}};
+     .help = "answer glGet from tracked state, until a call may have changed the value"}};
 
 }  // namespace
 
 constinit const UnitDescription track_description{
     .name = "track",
-    .help = "remembers what OpenGL cannot be asked for later, and notices the first 3-D texture",
+    .help = "tracks state that OpenGL cannot be queried for later, and detects the first 3-D texture",
     .options = track_options,
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
       return std::make_unique<Track>(place.chain, place.options.is_on("answer"));

@@ -66,11 +66,12 @@ std::uint64_t Unpack::take(const Records& records, const PackedCall* /*last*/) {
   return result;
 }
 
-constinit const UnitDescription unpack_description{.name = "unpack",
-                                                   .help = "makes the calls that pack has turned into records",
-                                                   .needs = "pack",
-                                                   .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
-                                                     return std::make_unique<Unpack>(place.chain);
-                                                   }};
+constinit const UnitDescription unpack_description{
+    .name = "unpack",
+    .help = "executes the calls that pack has encoded into records",
+    .needs = "pack",
+    .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
+      return std::make_unique<Unpack>(place.chain);
+    }};
 
 }  // namespace understudy::spu

@@ -7,7 +7,7 @@ namespace understudy::spu {
 
 constinit const UnitDescription volume_description{
     .name = "volume",
-    .help = "recognises volumes drawn as slices, and lets the render nodes draw them",
+    .help = "recognises where a program draws a volume, and draws it by ray casting instead",
     .needs = "track",
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
       return std::make_unique<VolumeUnit>(place.chain, place.session);

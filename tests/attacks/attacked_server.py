@@ -21,7 +21,7 @@ def said(folder):
 
 def port_of(process, folder):
     for _ in range(600):
-        found = re.search(r"and at 127\.0\.0\.1:([0-9]+)", said(folder))
+        found = re.search(r"also at 127\.0\.0\.1:([0-9]+)", said(folder))
         if found:
             return int(found[1])
         if process.poll() is not None:

@@ -31,7 +31,7 @@ TEST_F(Leftovers, OfAKilledMpirunAreNone) {
     ASSERT_TRUE(clients::comes_true([&] { return segments() == 2; })) << "not in the run's folder";
     for (const pid_t process : processes("mpirun")) ::kill(process, SIGKILL);
     EXPECT_TRUE(clients::comes_true([&] {
-      return server.process().err().find("(1 of 5)") != std::string::npos && segments() == 2;
+      return server.process().err().find("(attempt 1 of 5)") != std::string::npos && segments() == 2;
     })) << server.process().err();
     server.process().signal(SIGTERM);
     EXPECT_EQ(server.process().finish().status, 0);

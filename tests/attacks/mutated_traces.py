@@ -157,7 +157,7 @@ def main():
         print(f"{command}: {number} times {status}")
     for number, command, status, said, _ in endings:
         if status == DRIVER_CRASHED:
-            print(f"seed {number}, {command}: {next(line for line in said.splitlines() if 'by signal' in line)}")
+            print(f"seed {number}, {command}: {next(line for line in said.splitlines() if 'with signal' in line)}")
     number, command, _, _, kib = max(endings, key=lambda ending: ending[4])
     print(f"the largest process: {kib >> 10} MiB (seed {number}, {command}); for the traces as they are {usual_kib >> 10} MiB")
     wrong = [ending for ending in endings if ending[2] not in (*REFUSED, DRIVER_CRASHED) or ending[4] > usual_kib + MOST_KIB_MORE]

@@ -56,7 +56,7 @@ TEST_F(OwnFiles, AFolderThatHoldsSomethingIsNotTakenOver) {
   const clients::Outcome outcome =
       run({(clients::programs / "understudy").string(), "serve", "-n", "1", "--folder", file("home").string()});
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("it must be an empty folder of yours"));
+  EXPECT_THAT(outcome.err, HasSubstr("it must be empty, yours"));
   EXPECT_EQ(clients::contents(file("home") / "letter"), "precious");
   fs::remove(file("home") / "letter");
   ::chmod(file("home").c_str(), 0755);

@@ -47,7 +47,7 @@ class OverTcp : public CommandTest {
     std::string said;
     ASSERT_TRUE(comes_true([&] {
       said = server_->out();
-      return std::regex_search(said, found, std::regex("and at (127\\.0\\.0\\.1:[0-9]+)")) ||
+      return std::regex_search(said, found, std::regex("also at (127\\.0\\.0\\.1:[0-9]+)")) ||
              !server_->running();
     }));
     ASSERT_TRUE(server_->running()) << server_->err();

@@ -89,10 +89,11 @@ TEST_F(RemoteOsmesa, TakesThePlaceOfEglAndSaysWhy) {
   // Neither a vendor's library nor a driver.
   const Outcome no_vendor =
       run_remote("no_vendor", "table", {}, {{"__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere"}});
-  EXPECT_THAT(no_vendor.err, HasSubstr("drawing on OSMesa, as EGL has no display without a window system"));
+  EXPECT_THAT(no_vendor.err,
+              HasSubstr("drawing on OSMesa, because EGL has no display without a window system"));
   expect_substituted_and_alike("egl", "no_vendor");
   const Outcome no_driver = run_remote("no_driver", "table", {}, {{"LIBGL_DRIVERS_PATH", "/nowhere"}});
-  EXPECT_THAT(no_driver.err, HasSubstr("drawing on OSMesa, as EGL"));
+  EXPECT_THAT(no_driver.err, HasSubstr("drawing on OSMesa, because EGL"));
   expect_substituted_and_alike("egl", "no_driver");
   EXPECT_EQ(leftovers(), "");
 }

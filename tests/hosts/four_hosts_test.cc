@@ -268,7 +268,7 @@ TEST_F(Harmed, GoOnWithoutAHostThatIsCutOff) {
   const Outcome outcome = after([&](Child&) { set_link(3, "down"); }, all_hosts - 1);
   EXPECT_EQ(count_of(outcome.err, "the connection to host3 was lost"), 1) << outcome.err;
   EXPECT_EQ(count_of(outcome.err, "host host3 does not answer"), 1) << outcome.err;
-  EXPECT_EQ(count_of(outcome.err, "going on with 3 nodes on host1, host2, host4"), 1) << outcome.err;
+  EXPECT_EQ(count_of(outcome.err, "continuing with 3 nodes on host1, host2, host4"), 1) << outcome.err;
   set_link(3, "up");
 }
 

@@ -290,7 +290,7 @@ TEST_F(Osmesa, TheHighestVersionIsOneThatCanBeMade) {
 TEST_F(Osmesa, AContextOfALaterVersionIsReplacedAndThatIsSaid) {
   testing::internal::CaptureStderr();
   add(core_context(1, 990));
-  EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::HasSubstr("the trace wants OpenGL 9.9"));
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::HasSubstr("the trace needs OpenGL 9.9"));
   EXPECT_GE(integer(GL_MAJOR_VERSION), 3);
 }
 

@@ -41,7 +41,7 @@ Difference difference(const RgbaImage& a, const RgbaImage& b) {
       for (int channel = 0; channel < channels; ++channel) {
         const double apart = std::abs(double{a.pixel(x, y)[channel]} - b.pixel(x, y)[channel]);
         if (!std::isfinite(apart)) {
-          throw std::runtime_error(fmt::format("pixel {}, {} holds a value that is not a finite number", x, y));
+          throw std::runtime_error(fmt::format("pixel {}, {} has a value that is not a finite number", x, y));
         }
         result.max = std::max(result.max, apart);
         sum += apart * apart;
@@ -85,10 +85,15 @@ void add_compare(CLI::App& app, std::function<int()>& chosen) {
     std::string map;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* compare = app.add_subcommand("compare", "how far two images (PNG or PFM) are apart");
-  compare->add_option("A", arguments->a, "image; beside frame.pfm, frame_alpha.pfm is its alpha")->required();
-  compare->add_option("B", arguments->b, "image of the same size")->required();
-  compare->add_option("--map", arguments->map, "write the difference as a PNG; white is the largest")
+  CLI::App* compare = app.add_subcommand("compare", "prints the difference between two images (PNG or PFM)");
+  compare
+      ->add_option("A", arguments->a,
+                   "first image; the alpha channel of frame.pfm is read from frame_alpha.pfm beside it")
+      ->required();
+  compare->add_option("B", arguments->b, "second image, of the same size")->required();
+  compare
+      ->add_option("--map", arguments->map,
+                   "write the difference as a PNG image, in which white is the largest difference")
       ->check(can_be_written(".png"));
   compare->callback([arguments, &chosen] {
     chosen = [arguments] {

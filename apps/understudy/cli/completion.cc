@@ -16,9 +16,8 @@ namespace understudy::launcher {
 
 void add_completion(CLI::App& app, std::function<int()>& chosen) {
   const auto shell = std::make_shared<std::string>();
-  CLI::App* subcommand =
-      app.add_subcommand("completion", "what a shell reads to complete this program's command line");
-  subcommand->add_option("shell", *shell, "bash, zsh or fish")
+  CLI::App* subcommand = app.add_subcommand("completion", "prints the command line completion for a shell");
+  subcommand->add_option("shell", *shell, "shell to print the completion for")
       ->required()
       ->type_name("bash|zsh|fish")
       ->check(CLI::IsMember({"bash", "zsh", "fish"}).description(""));
@@ -31,7 +30,7 @@ void add_completion(CLI::App& app, std::function<int()>& chosen) {
 }
 
 void add_manual(CLI::App& app, std::function<int()>& chosen) {
-  CLI::App* subcommand = app.add_subcommand("manual", "the manual page, in the language of man(7)");
+  CLI::App* subcommand = app.add_subcommand("manual", "prints the manual page, in the format of man(7)");
   subcommand->group("");
   subcommand->callback([&app, &chosen] {
     chosen = [&app] {
@@ -39,14 +38,15 @@ void add_manual(CLI::App& app, std::function<int()>& chosen) {
       std::string summary = app.get_description();
       if (summary.ends_with('.')) summary.pop_back();
       summary.front() = char(std::tolower(static_cast<unsigned char>(summary.front())));
-      fmt::print("{}",
-                 text_of({app.get_name(),
-                          version_number(),
-                          summary,
-                          subcommands,
-                          {{"understudy-node", "a render node; `understudy` starts it by mpirun"},
-                           {"understudy-view", "what `understudy view` starts, and its options"},
-                           {"understudy-viewer", "a small volume viewer to try `understudy run` with"}}}));
+      fmt::print(
+          "{}",
+          text_of({app.get_name(),
+                   version_number(),
+                   summary,
+                   subcommands,
+                   {{"understudy-node", "a render node, which `understudy` starts through mpirun"},
+                    {"understudy-view", "the program that `understudy view` starts, with the same options"},
+                    {"understudy-viewer", "a small volume viewer for trying out `understudy run`"}}}));
       return 0;
     };
   });

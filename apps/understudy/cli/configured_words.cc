@@ -70,7 +70,7 @@ bool is_switch(const CLI::Option& option) {
 std::vector<std::string> words_of(const ConfiguredOption& configured, const CLI::Option& option) {
   if (!is_switch(option)) return {fmt::format("--{}={}", configured.name, configured.value)};
   if (!configured.is_true_or_false)
-    throw std::runtime_error(fmt::format("{}, line {}: {} is a switch, true or false",
+    throw std::runtime_error(fmt::format("{}, line {}: {} is a switch; its value must be true or false",
                                          configuration_file().string(), configured.line, configured.name));
   if (configured.value == "off") return {};
   return {"--" + configured.name};
@@ -99,12 +99,12 @@ int show_configuration(const CLI::App& run, const std::vector<std::string>& view
   const std::filesystem::path file = configuration_file();
   const std::vector<ConfiguredOption> configured = configured_options(file, viewer);
   for (const ConfiguredOption& option : configured) option_of(run, option);
-  fmt::print("{}{}\n", file.string(), std::filesystem::exists(file) ? "" : " (there is none)");
+  fmt::print("{}{}\n", file.string(), std::filesystem::exists(file) ? "" : " (does not exist)");
   fmt::print("{}\n", viewer.empty() ? "for all viewers:" : fmt::format("for {}:", viewer.front()));
   for (const CLI::Option* option : run.get_options()) {
     if (!option->get_lnames().empty()) print_option(*option, configured);
   }
-  fmt::print("Other options have their defaults: understudy run --help\n");
+  fmt::print("All other options have their defaults; for a list: understudy run --help\n");
   return 0;
 }
 
@@ -127,11 +127,10 @@ CommandLine with_configuration(const CLI::App& app, CommandLine line) {
 
 void add_config(CLI::App& app, std::function<int()>& chosen) {
   const auto viewer = std::make_shared<std::vector<std::string>>();
-  CLI::App* subcommand =
-      app.add_subcommand("config",
-                         "shows which options of `understudy run` the configuration file and the "
-                         "environment set");
-  subcommand->add_option("viewer", *viewer, "of this program; without one, of all viewers")
+  CLI::App* subcommand = app.add_subcommand(
+      "config", "prints the options of `understudy run` that the configuration file and the environment set");
+  subcommand
+      ->add_option("viewer", *viewer, "viewer whose options are printed; without it, those of all viewers")
       ->type_name("PROGRAM");
   subcommand->callback([&app, viewer, &chosen] {
     chosen = [&app, viewer] { return show_configuration(*app.get_subcommand("run"), *viewer); };

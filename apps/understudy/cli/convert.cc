@@ -51,48 +51,49 @@ int convert(const Arguments& arguments) {
 
 std::string figures_text(const volume::HierarchyFigures& figures) {
   std::string text =
-      fmt::format("{} bytes, {:.3f} of the volume's {}\n", figures.file_bytes,
+      fmt::format("{} bytes, {:.3f} of the volume's {} bytes\n", figures.file_bytes,
                   double(figures.file_bytes) / double(figures.scalar_bytes), figures.scalar_bytes);
   for (std::size_t level = 0; level < figures.levels.size(); ++level) {
     const volume::HierarchyFigures::Level& of = figures.levels[level];
     text += fmt::format("level {}: {} x {} x {}, {} bytes, {}\n", level, of.size[0], of.size[1], of.size[2],
                         of.bytes,
-                        std::isfinite(of.error) ? fmt::format("values off by {:.4g} at most", of.error)
-                                                : "no bound of the error: some values are no finite numbers");
+                        std::isfinite(of.error) ? fmt::format("largest error of a value {:.4g}", of.error)
+                                                : "no error bound: some values are not finite numbers");
   }
   return text;
 }
 
 void add_convert(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* subcommand =
-      app.add_subcommand("convert", "a volume in levels of detail, compressed: a file that is read in part");
+  CLI::App* subcommand = app.add_subcommand(
+      "convert", "converts a volume to a compressed file with levels of detail, readable in parts");
   subcommand
       ->add_option("VOLUME", arguments->volume,
-                   "raw, NRRD, NIfTI, MetaImage, DICOM, TIFF, VTI, UVOL, a folder of slices or of Zarr, or "
-                   "synthetic: as for render")
+                   "volume to convert: raw, NRRD, NIfTI, MetaImage, DICOM, TIFF, VTI or UVOL, a folder of "
+                   "slices or of Zarr, or synthetic, as for render")
       ->required();
-  subcommand->add_option("-o,--out", arguments->out, "the file to write")
+  subcommand->add_option("-o,--out", arguments->out, "file to write")
       ->required()
       ->type_name("NAME.uvol")
       ->check(can_be_written(".uvol"));
   subcommand
       ->add_option("--max-error", arguments->options.max_error,
-                   "no value of the volume may change by more; 0: none changes")
+                   "largest change of any value of the volume; 0: lossless")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   subcommand
       ->add_option("--prediction", arguments->prediction,
-                   "of samples by two neighbours (linear) or by four (cubic)")
+                   "prediction of samples from two neighbours (linear) or from four (cubic)")
       ->check(CLI::IsMember({"linear", "cubic"}))
       ->capture_default_str();
   subcommand
-      ->add_option("--effort", arguments->options.effort, "of the compression: more is slower and smaller")
+      ->add_option("--effort", arguments->options.effort,
+                   "effort of the compression: higher values are slower and produce smaller files")
       ->check(CLI::Range(1, 19))
       ->capture_default_str();
   subcommand
       ->add_option("--time-step", arguments->time_step,
-                   "of a file that holds several: which is converted, counted from 0")
+                   "time step to convert, of a file with several, counted from 0")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   add_file_hints(*subcommand, arguments->raw);

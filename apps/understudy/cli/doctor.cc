@@ -59,11 +59,12 @@ int doctor(const DoctorArguments& arguments) {
 
 void add_doctor(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<DoctorArguments>();
-  CLI::App* subcommand =
-      app.add_subcommand("doctor", "what of OpenGL, X, MPI works here, and how to mend what does not");
+  CLI::App* subcommand = app.add_subcommand(
+      "doctor",
+      "checks OpenGL, X, MPI and the sandbox on this machine, and prints a fix for whatever does not work");
   subcommand->add_flag("--deep", arguments->deep,
                        "also run a small viewer by each injection method, on two nodes and on a GL server; the "
-                       "exit status is 1 where its volume is not substituted");
+                       "exit status is 1 if any of these runs does not substitute its volume");
   subcommand->add_flag("--json", arguments->json, "print the findings as JSON");
   subcommand->callback([arguments, &chosen] { chosen = [arguments] { return doctor(*arguments); }; });
 }

@@ -40,7 +40,7 @@ int remove(const std::string& viewer) {
   const auto made = find_desktop_entry(viewer + std::string(mark));
   const fs::path place = entry ? place_of(entry->stem()) : made ? *made : place_of(viewer);
   say(fs::remove(place) ? fmt::format("removed {}", place.string())
-                        : fmt::format("there is no {}", place.string()));
+                        : fmt::format("{} does not exist", place.string()));
   return 0;
 }
 
@@ -59,12 +59,11 @@ int install(const InstallArguments& arguments, const std::vector<std::string>& o
   if (!entry) {
     std::string folders;
     for (const fs::path& folder : application_folders()) folders += " " + folder.string();
-    say(fmt::format("no entry of the menu is named {}; looked for .desktop files in{}", arguments.viewer,
-                    folders));
+    say(fmt::format("no menu entry is named {}; searched for .desktop files in{}", arguments.viewer, folders));
     return usage_error;
   }
   if (entry->stem().string().ends_with(mark)) {
-    say(fmt::format("{} starts its viewer under Understudy already; name the viewer's own entry",
+    say(fmt::format("{} already starts its viewer under Understudy; give the name of the viewer's own entry",
                     entry->string()));
     return usage_error;
   }
@@ -77,7 +76,8 @@ int install(const InstallArguments& arguments, const std::vector<std::string>& o
     say(fmt::format("{}: {}", entry->string(), error.what()));
     return 1;
   }
-  say(fmt::format("{} starts what {} does, under Understudy", place.string(), entry->string()));
+  say(fmt::format("installed {}, which starts the viewer of {} under Understudy", place.string(),
+                  entry->string()));
   return 0;
 }
 
@@ -86,18 +86,17 @@ int install(const InstallArguments& arguments, const std::vector<std::string>& o
 void add_install_launcher(CLI::App& app, const std::vector<std::string>& options,
                           std::function<int()>& chosen) {
   const auto arguments = std::make_shared<InstallArguments>();
-  CLI::App* subcommand = app.add_subcommand(
-      "install-launcher",
-      "adds an entry to the desktop's menu that starts a viewer under Understudy: understudy install-launcher "
-      "VIEWER [-- options of run…]");
+  CLI::App* subcommand =
+      app.add_subcommand("install-launcher",
+                         "adds an entry to the desktop menu that starts a viewer under Understudy: understudy "
+                         "install-launcher VIEWER [-- options of run…]");
   subcommand
-      ->add_option(
-          "viewer", arguments->viewer,
-          "as its .desktop file is named: paraview for paraview.desktop or org.paraview.ParaView.desktop; or "
-          "the file")
+      ->add_option("viewer", arguments->viewer,
+                   "name of the viewer's .desktop file, as paraview for paraview.desktop or "
+                   "org.paraview.ParaView.desktop, or the path of the file")
       ->required()
       ->type_name("VIEWER");
-  subcommand->add_flag("--remove", arguments->remove, "take the entry away again");
+  subcommand->add_flag("--remove", arguments->remove, "remove the entry instead of adding it");
   subcommand->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] { return install(*arguments, options); };
   });

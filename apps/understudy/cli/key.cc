@@ -12,10 +12,10 @@ namespace understudy::launcher {
 
 void add_key(CLI::App& app, std::function<int()>& chosen) {
   const auto file = std::make_shared<std::filesystem::path>();
-  CLI::App* subcommand = app.add_subcommand(
-      "key",
-      "makes a key for serve --key or for --connect: FILE for its owner alone, FILE.pub for the other end");
-  subcommand->add_option("file", *file, "where to; must not be there yet")->required()->type_name("FILE");
+  CLI::App* subcommand = app.add_subcommand("key",
+                                            "creates a key pair for serve --key or for --connect: FILE, which "
+                                            "only its owner may read, and FILE.pub for the other end");
+  subcommand->add_option("file", *file, "file to write; it must not exist yet")->required()->type_name("FILE");
   subcommand->callback([file, &chosen] {
     chosen = [file] {
       const compositor::KeyPair key = compositor::make_key_file(*file);

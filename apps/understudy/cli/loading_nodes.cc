@@ -33,14 +33,16 @@ ServiceMaker linked_to(const std::string& address) {
 }  // namespace
 
 void add_loading_nodes(CLI::App& subcommand, LoadingNodes& arguments) {
-  CLI::Option* nodes = subcommand
-                           .add_option("-n,--nodes", arguments.nodes,
-                                       "number of MPI ranks, which read the file themselves; default: what a "
-                                       "hostfile or a Slurm allocation says, else this process")
-                           ->check(CLI::Range(1, spu::max_nodes));
+  CLI::Option* nodes =
+      subcommand
+          .add_option("-n,--nodes", arguments.nodes,
+                      "number of MPI ranks to render on, which read the file themselves; default: the slots of "
+                      "the hostfile or the tasks of the Slurm allocation, otherwise render in this process")
+          ->check(CLI::Range(1, spu::max_nodes));
   add_hostfile_option(subcommand, arguments.hostfile);
   subcommand
-      .add_option("--connect", arguments.connect, "nodes that `understudy serve` keeps: a socket, or HOST:PORT")
+      .add_option("--connect", arguments.connect,
+                  "render on the nodes of `understudy serve`: its socket, or HOST:PORT")
       ->type_name("WHERE")
       ->excludes(nodes)
       ->excludes(subcommand.get_option("--hostfile"));
@@ -66,10 +68,9 @@ std::vector<std::string> with_loading_nodes(
   if (arguments.connect.empty())
     placement = placement_of({arguments.nodes, arguments.hostfile}, current_environment());
   if (placement.ranks == 0 && arguments.choices.backend != "cpu")
-    throw std::invalid_argument(
-        fmt::format("--backend {} is for nodes of this rendering: give -n N as well, or give it to "
-                    "understudy serve",
-                    arguments.choices.backend));
+    throw std::invalid_argument(fmt::format(
+        "--backend {} has no effect without render nodes; add -n N, or give --backend to understudy serve",
+        arguments.choices.backend));
   if (placement.ranks > 0)
     return with_own_nodes(
         {placement, arguments.choices},

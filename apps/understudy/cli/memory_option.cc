@@ -47,8 +47,8 @@ void add_memory_option(CLI::App& subcommand, std::string& memory, const std::str
   subcommand
       .add_option("--memory", memory,
                   what +
-                      "; in bytes or with K, M, G; auto (default): three quarters of what this machine has "
-                      "available, shared by the ranks, within `ulimit -v`")
+                      "; in bytes, or with K, M, G or T; auto (default): three quarters of the memory "
+                      "available on this machine, shared by its ranks, within `ulimit -v`")
       ->transform(CLI::Validator(to_byte_size, "", "size"))
       ->type_name("BYTES|auto");
 }

@@ -50,10 +50,10 @@ void add_hostfile_option(CLI::App& subcommand, std::filesystem::path& hostfile) 
   subcommand
       .add_option(
           "--hostfile", hostfile,
-          "MPI ranks on these hosts, this one among them: a host a line as in 'node1 slots=2', comments "
-          "behind '#'; without -n as many as there are slots. Programs and libraries must be there under "
-          "the same path, and the launch agent (ssh, or OMPI_MCA_plm_rsh_agent) must ask for no password. What "
-          "MPI sends between hosts is not encrypted: use networks that you trust")
+          "file of the hosts to run MPI ranks on, among them this one: one host per line, as in 'node1 "
+          "slots=2', comments after '#'; without -n, one rank per slot. Programs and libraries must be "
+          "installed under the same path on all hosts, and the launch agent (ssh, or OMPI_MCA_plm_rsh_agent) "
+          "must not ask for a password. MPI traffic between hosts is not encrypted: use trusted networks.")
       ->type_name("FILE");
 }
 

@@ -15,7 +15,7 @@ CLI::Validator can_be_written(const std::string& ending) {
         if (path.empty()) return std::string();
         const bool regular = !std::filesystem::exists(path) || std::filesystem::is_regular_file(path);
         if (!ending.empty() && regular && std::filesystem::path(path).extension() != ending)
-          return fmt::format("{} is written as {}; give a name that ends in it", path, ending);
+          return fmt::format("{}: the file is written as {}; give a name with this ending", path, ending);
         return obstacle_to_writing(path);
       },
       "");

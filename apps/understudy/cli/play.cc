@@ -49,14 +49,14 @@ class Playing {
       play(*block);
     }
     if (reader_.cut_off())
-      logging::log(logging::Level::warn, "{} was cut off; it was played to its last whole block",
+      logging::log(logging::Level::warn, "{} was cut off; it was replayed up to its last complete block",
                    plan_.trace.string());
     if (frame_ <= plan_.frames.first && plan_.frames.first > 1) {
       spu::forget_counted_frames();
       logging::log(logging::Level::info, "{} has only {} frames", plan_.trace.string(), frame_ - 1);
     }
     if (played_.errors > 0)
-      logging::log(logging::Level::warn, "{} records could not be played", played_.errors);
+      logging::log(logging::Level::warn, "{} records could not be replayed", played_.errors);
     return played_;
   }
 
@@ -132,7 +132,7 @@ FrameRange parse_frame_range(const std::string& text) {
   const auto number = [&](const std::string& digits) -> std::uint64_t {
     const bool valid = !digits.empty() && digits.size() < 10 &&
                        std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
-    if (!valid) throw std::runtime_error(fmt::format("'{}' is no range of frames; write 3-7, 3- or 3", text));
+    if (!valid) throw std::runtime_error(fmt::format("'{}' is not a range of frames; give 3-7, 3- or 3", text));
     return std::stoull(digits);
   };
   range.first = number(text.substr(0, dash));
@@ -142,7 +142,8 @@ FrameRange parse_frame_range(const std::string& text) {
     range.last = number(text.substr(dash + 1));
   }
   if (range.first == 0 || range.last < range.first)
-    throw std::runtime_error(fmt::format("'{}' is no range of frames; they are counted from 1", text));
+    throw std::runtime_error(fmt::format(
+        "'{}' is not a range of frames; frames are counted from 1, and the first comes before the last", text));
   return range;
 }
 
@@ -153,7 +154,7 @@ Played play(const PlayPlan& plan, const spu::Options& options) {
 void add_play(CLI::App& app, std::function<int()>& chosen) {
   const auto plan = std::make_shared<PlayPlan>();
   const auto frames = std::make_shared<std::string>();
-  CLI::App* subcommand = app.add_subcommand("play", "plays a trace in this process, for replay");
+  CLI::App* subcommand = app.add_subcommand("play", "replays a trace in this process, for replay");
   subcommand->group("");
   subcommand->add_option("trace", plan->trace)->required();
   subcommand->add_option("--frames", *frames);

@@ -61,7 +61,7 @@ int print(const PrintArguments& arguments) {
   // A reader that has seen enough, as head has, is no error.
   std::fflush(stdout);
   if (reader.cut_off())
-    logging::log(logging::Level::warn, "{} was cut off; this is up to its last whole block",
+    logging::log(logging::Level::warn, "{} was cut off; it was printed up to its last complete block",
                  arguments.trace.string());
   return 0;
 }
@@ -70,10 +70,13 @@ int print(const PrintArguments& arguments) {
 
 void add_print(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<PrintArguments>();
-  CLI::App* subcommand = app.add_subcommand("print", "writes what a trace holds, one line a call or event");
-  subcommand->add_option("trace", arguments->trace, "the file")->required()->check(CLI::ExistingFile);
-  subcommand->add_option("--frames", arguments->frames, "only frames A to B, counted from 1")->type_name("A-B");
-  subcommand->add_option("--calls", arguments->calls, "only calls whose names match, for example 'glTex*'")
+  CLI::App* subcommand = app.add_subcommand("print", "prints the calls and events of a trace, one per line");
+  subcommand->add_option("trace", arguments->trace, "trace file")->required()->check(CLI::ExistingFile);
+  subcommand->add_option("--frames", arguments->frames, "print only frames A to B, counted from 1")
+      ->type_name("A-B");
+  subcommand
+      ->add_option("--calls", arguments->calls,
+                   "print only calls whose names match this pattern, for example 'glTex*'")
       ->type_name("GLOB");
   subcommand->callback([arguments, &chosen] {
     if (!arguments->frames.empty()) parse_frame_range(arguments->frames);

@@ -89,9 +89,9 @@ Passes passes_of(const volume::VolumeFile& file, const FileScene& scene, const R
   const volume::VolumeDescription& volume = scene.load.volume;
   auto parts = compositor::passes_within(volume, file, ranks, memory.bytes);
   if (!parts)
-    throw std::invalid_argument(
-        fmt::format("no part of this volume fits into {} MiB for each rank; give more --memory, or more nodes",
-                    memory.bytes >> 20U));
+    throw std::invalid_argument(fmt::format(
+        "no part of this volume fits into {} MiB for each rank; increase --memory, or use more nodes",
+        memory.bytes >> 20U));
   passes.parts = *std::move(parts);
   // A part is divided among all ranks; a whole volume one of them may keep for the others.
   if (memory.of_each_process && passes.parts.ranks == 1 && ranks > 1 &&
@@ -133,7 +133,8 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
   const spu::BudgetAsked asked = budget_asked(arguments.budget, arguments.nodes.choices.pixels == "float");
   const bool in_parts = passes.parts.ranks > 1;
   if (in_parts && asked.ms > 0 && asked.error == 0)
-    throw std::invalid_argument("--time is for volumes that memory holds: give more --memory, or --error");
+    throw std::invalid_argument(
+        "--time requires that the whole volume fits into memory; increase --memory, or give --error instead");
   SceneFrames frames(renderer, scene.load.volume, own, asked);
   if (in_parts) frames.look_no_more();
   for (int frame = 0; frame < arguments.frames; ++frame) {
@@ -164,8 +165,8 @@ int render(RenderArguments arguments) {
       figures = render_with(*make(), scene, arguments);
     });
   } catch (const compositor::ServiceLost& lost) {
-    throw std::runtime_error(
-        fmt::format("no image was made: render again, or in this process, without nodes ({})", lost.what()));
+    throw std::runtime_error(fmt::format(
+        "no image was rendered ({}); try again, or render in this process, without nodes", lost.what()));
   }
   figures.backends = backends;
   if (!arguments.report.empty()) write_render_report(arguments.report, figures);
@@ -179,40 +180,43 @@ int render(RenderArguments arguments) {
 
 void add_render(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<RenderArguments>();
-  CLI::App* render_command = app.add_subcommand("render", "an image of a volume in a file, without a viewer");
+  CLI::App* render_command =
+      app.add_subcommand("render", "renders an image of a volume file, without a viewer");
   add_scene_options(*render_command, arguments->scene);
   add_loading_nodes(*render_command, arguments->nodes);
-  add_memory_option(*render_command, arguments->memory,
-                    "what each rank may take: of larger volumes one part after the other is loaded and shown");
-  render_command->add_option("--out", arguments->out, "the image, over black")
+  add_memory_option(
+      *render_command, arguments->memory,
+      "memory limit of each rank; larger volumes are loaded and rendered in parts, one after another");
+  render_command->add_option("--out", arguments->out, "PNG file to write: the image over black")
       ->type_name("P.png")
       ->required()
       ->check(can_be_written(".png"));
   render_command
       ->add_option("--level", arguments->scene.level,
-                   "of a hierarchical volume: a coarser level of detail, with every 2nd (1), 4th (2), … "
-                   "sample; of OME-Zarr: "
-                   "one of its levels; "
-                   "--step is in its samples")
+                   "level of detail of a hierarchical volume, with all samples (0), every 2nd (1), every 4th "
+                   "(2), …, or of OME-Zarr, one of its levels; --step is then in samples of the level")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   render_command
-      ->add_option("--save-float", arguments->save_float, "the image before it is rounded, and its alpha")
+      ->add_option("--save-float", arguments->save_float,
+                   "PFM file for the image before it is rounded; F_alpha.pfm is written for its alpha channel")
       ->type_name("F.pfm")
       ->check(can_be_written(".pfm"));
-  render_command->add_option("--report", arguments->report, "figures as JSON")
+  render_command->add_option("--report", arguments->report, "write the figures of this rendering as JSON")
       ->type_name("F.json")
       ->check(can_be_written());
   add_budget_options(*render_command, arguments->budget);
   render_command
       ->add_flag("--error-bound", arguments->scene.error_bound,
-                 "say by how much any pixel may be wrong, certified")
+                 "print a certified bound of the error of the image")
       ->excludes(render_command->get_option("--error"))
       ->excludes(render_command->get_option("--time"));
-  render_command->add_option("--frames", arguments->frames, "render as often, for the time")
+  render_command
+      ->add_option("--frames", arguments->frames,
+                   "number of times to render the image, to measure the frame time")
       ->check(CLI::Range(1, max_frames))
       ->capture_default_str();
-  add_progress_options(*render_command, arguments->progress, ", with the bytes read by each rank");
+  add_progress_options(*render_command, arguments->progress, ", with the bytes that each rank has read");
   render_command->callback([arguments, &chosen] { chosen = [arguments] { return render(*arguments); }; });
 }
 

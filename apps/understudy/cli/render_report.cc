@@ -77,41 +77,39 @@ std::string summary_text(const RenderFigures& figures) {
   const double left_out =
       counts.samples == 0 ? 0 : 100 * (1 - double(counts.samples_taken) / double(counts.samples));
   std::string text = fmt::format(
-      "understudy: {} x {} x {} of {}, {}: loaded in {:.0f} ms, {} in {:.1f} ms each; {:.1f} % of {:.1f} "
-      "million "
-      "samples left out, {} of {} blocks empty\n",
+      "understudy: {} x {} x {} of {}, {}: loaded in {:.0f} ms, {} of {:.1f} ms; {:.1f} % of {:.1f} million "
+      "samples skipped, {} of {} blocks empty\n",
       size[0], size[1], size[2], volume::name_of(figures.description.type),
       figures.nodes == 0 ? "in this process" : fmt::format("{} nodes", figures.nodes), figures.load_ms,
       figures.frame_ms.size() == 1 ? "1 frame" : fmt::format("{} frames", figures.frame_ms.size()),
       median(figures.frame_ms), left_out, double(counts.samples) / 1e6, counts.blocks_empty, counts.blocks);
-  text += fmt::format("understudy: each rank read {}, keeps {} of bricks, and had at most {} in memory\n",
+  text += fmt::format("understudy: each rank read {}, holds {} of bricks, and used at most {} of memory\n",
                       over_ranks(figures.ranks, &compositor::RankLoad::bytes_read),
                       over_ranks(figures.ranks, &compositor::RankLoad::brick_bytes),
                       over_ranks(figures.ranks, &compositor::RankLoad::peak_bytes));
   if (const compositor::PassFigures& passes = figures.passes; passes.passes > 1)
     text += fmt::format(
-        "understudy: shown in {} parts within the memory that each rank may take: {} times one was loaded; "
-        "left "
-        "out: {} in which nothing is visible, {} behind what is opaque\n",
+        "understudy: rendered in {} parts within the memory limit of each rank, with {} loads of parts; "
+        "skipped {} parts without anything visible, and {} behind opaque ones\n",
         passes.passes, passes.loads, passes.empty, passes.hidden);
   if (const auto& detail = figures.description.detail)
-    text += fmt::format("understudy: level {} of a volume of {} x {} x {}: {}\n", detail->level,
-                        detail->volume_size[0], detail->volume_size[1], detail->volume_size[2],
-                        std::isfinite(detail->error)
-                            ? fmt::format("its values are at most {:.4g} off", detail->error)
-                            : "no bound of its error: some values are no finite numbers");
+    text +=
+        fmt::format("understudy: level {} of a volume of {} x {} x {}: {}\n", detail->level,
+                    detail->volume_size[0], detail->volume_size[1], detail->volume_size[2],
+                    std::isfinite(detail->error) ? fmt::format("largest error of a value {:.4g}", detail->error)
+                                                 : "no error bound: some values are not finite numbers");
   if (figures.bound)
     text += fmt::format(
-        "understudy: certified: no channel of any pixel is further than {:.3g} from the integral, of half the "
-        "pixels "
-        "{:.3g}; bounding took {:.0f} ms\n",
+        "understudy: certified: every channel of every pixel is within {:.3g} of the integral, and of half the "
+        "pixels within {:.3g}; computing these bounds took {:.0f} ms\n",
         figures.bound->greatest, figures.bound->median, figures.bound->time_ms);
   if (spu::has_budget(figures.budget))
     text += fmt::format("understudy: {}\n", spu::sentence_of(figures.budget));
   const volume::TexelFigures texels = texel_figures(figures.ranks);
   if (texels.largest_error > 0 || texels.not_numbers > 0)
     text += fmt::format(
-        "understudy: values {:g} to {:g} became {} texels, at most {:.3g} off; {} were no numbers\n",
+        "understudy: values {:g} to {:g} were converted to {} texels, with errors of at most {:.3g}; {} values "
+        "are not numbers\n",
         texels.low, texels.high, name_of(figures.mapping.type), texels.largest_error, texels.not_numbers);
   return text;
 }
@@ -178,8 +176,8 @@ void write_render_report(const std::string& path, const RenderFigures& figures) 
   file << report.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   file.close();
   if (!file)
-    throw std::runtime_error(
-        fmt::format("{}: the report cannot be written; check that the folder exists and has room", path));
+    throw std::runtime_error(fmt::format(
+        "{}: the report cannot be written; check that the folder exists and the disk is not full", path));
 }
 
 }  // namespace understudy::launcher

@@ -57,18 +57,24 @@ void add_replay(CLI::App& app, std::function<int()>& chosen) {
   const auto own = std::make_shared<ReplayArguments>();
   const auto arguments = std::make_shared<RunArguments>();
   CLI::App* subcommand =
-      app.add_subcommand("replay", "plays a trace of `understudy run --trace`, without viewer or display");
-  subcommand->add_option("trace", own->trace, "the file")->required()->check(CLI::ExistingFile);
+      app.add_subcommand("replay", "replays a trace of `understudy run --trace`, without viewer or display");
+  subcommand->add_option("trace", own->trace, "trace file")->required()->check(CLI::ExistingFile);
   subcommand
-      ->add_option("--frames", own->frames, "save and count only frames A to B (counted from 1), end behind B")
+      ->add_option("--frames", own->frames,
+                   "save and count only frames A to B, counted from 1, and stop after frame B")
       ->type_name("A-B");
   subcommand
       ->add_option("--save-frames", own->save_frames,
-                   "save what the viewer showed (frame_0001.png, …) and what it read back (read_0001.png, …), "
-                   "with 8 bits; UNDERSTUDY_SAVE_FRAMES saves the nodes' float images, as in `run`")
+                   "save the frames that the viewer showed (frame_0001.png, …) and the images that it read "
+                   "back (read_0001.png, …) in DIR, with 8 bits per channel; UNDERSTUDY_SAVE_FRAMES saves the "
+                   "nodes' float images, as for `run`")
       ->type_name("DIR");
-  CLI::Option* native = subcommand->add_flag("--native", own->native, "the driver alone: what the viewer drew");
-  subcommand->add_option("--chain", own->chain, "the units to play on [UNDERSTUDY_CHAIN]")
+  CLI::Option* native = subcommand->add_flag(
+      "--native", own->native,
+      "replay on the OpenGL driver alone: the frames are those that the viewer drew itself");
+  subcommand
+      ->add_option("--chain", own->chain,
+                   "stream processing units to replay on, instead of the default ones [UNDERSTUDY_CHAIN]")
       ->type_name("UNITS")
       ->excludes(native);
   add_progress_options(*subcommand, own->progress);

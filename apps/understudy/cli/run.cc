@@ -25,7 +25,7 @@ namespace {
 
 int run_viewer(RunArguments arguments, const std::vector<std::string>& command) {
   if (command.empty()) {
-    say("which viewer? Put -- before its command: understudy run [options] -- viewer args…");
+    say("the command of the viewer is missing; put it after --: understudy run [options] -- viewer args…");
     return usage_error;
   }
   if (!arguments.trace.empty()) prepare_trace(arguments);
@@ -85,8 +85,10 @@ CommandLine split_at_double_dash(int argc, char** argv) {
 
 void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<RunArguments>();
-  CLI::App* subcommand = app.add_subcommand("run", "runs a viewer: understudy run [options] -- viewer args…");
-  subcommand->footer("Each option can also be given by the environment variable in brackets.");
+  CLI::App* subcommand = app.add_subcommand(
+      "run", "runs an OpenGL viewer and renders its volumes: understudy run [options] -- viewer args…");
+  subcommand->footer(
+      "An environment variable in brackets sets the same option; the command line takes precedence.");
   add_options_of_the_table(*subcommand, arguments);
   add_backend_option(*subcommand, arguments->backend);
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);
@@ -100,23 +102,24 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
                                                                  {"folder", InjectionMethod::folder}};
   subcommand
       ->add_option("--injection", arguments->injection,
-                   "how OpenGL calls are intercepted: audit (default; all of them), preload or folder")
+                   "method by which OpenGL calls are intercepted: audit (LD_AUDIT; default, intercepts all of "
+                   "them), preload (LD_PRELOAD) or folder (LD_LIBRARY_PATH)")
       ->transform(CLI::CheckedTransformer(injection_methods, CLI::ignore_case).description(""))
       ->type_name("audit|preload|folder");
   subcommand
       ->add_option("--trace", arguments->trace,
-                   "record every call in FILE for `understudy replay`; other processes of the viewer are "
-                   "recorded in FILE.PID")
+                   "record every OpenGL call in FILE, for `understudy replay`; calls of further processes of "
+                   "the viewer are recorded in FILE.PID")
       ->type_name("FILE")
       ->check(can_be_written());
-  subcommand->add_flag(
-      "--remote", arguments->remote,
-      "run a viewer without OpenGL: a GL server beside the nodes executes its calls and sends images to its "
-      "windows; with --connect HOST:PORT on that machine (understudy serve --gl-server)");
+  subcommand->add_flag("--remote", arguments->remote,
+                       "run the viewer without OpenGL of its own: a GL server beside the nodes executes its "
+                       "calls and sends images to its windows; with --connect HOST:PORT, the GL server of that "
+                       "machine (understudy serve --gl-server)");
   subcommand->add_flag("--require", arguments->required,
-                       "exit with status 3 when no frame was substituted, with 4 when the GL server of "
-                       "--remote was lost, unless the viewer's own status tells of a failure");
-  subcommand->add_flag("--quiet", arguments->quiet, "say nothing but warnings and errors");
+                       "exit with status 3 if no frame was substituted, and with 4 if the GL server of "
+                       "--remote was lost, unless the viewer itself failed");
+  subcommand->add_flag("--quiet", arguments->quiet, "print only warnings and errors");
   subcommand->callback([arguments, &viewer, &chosen] {
     chosen = [arguments, &viewer] { return run_viewer(*arguments, viewer); };
   });

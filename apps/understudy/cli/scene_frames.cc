@@ -35,7 +35,7 @@ SceneFrames::SceneFrames(compositor::ImageService& service, const volume::Volume
 bool SceneFrames::choose_samples(RenderFigures& figures) {
   if (volume::footprint(own_, volume_, volume::shown_cells(volume_)).empty()) return false;
   const std::string obstacle =
-      !own_.surfaces.empty() || own_.light ? "surfaces and light have no such integral" : "";
+      !own_.surfaces.empty() || own_.light ? "no integral is defined for surfaces and light" : "";
   const auto request = budget_->request(service_, own_, obstacle, volume_, 0, figures.budget);
   if (!request)
     throw std::invalid_argument(

@@ -85,13 +85,13 @@ Frontends open_frontends(const Installation& installation, const ServeArguments&
   const auto address = compositor::tcp_address_of(arguments.listen);
   if (!address)
     throw std::runtime_error(
-        fmt::format("--listen {}: this is no host:port; write :7070 for this machine alone, "
-                    "0.0.0.0:7070 for all of its networks",
+        fmt::format("--listen {}: not a HOST:PORT; give :7070 for this machine only, or 0.0.0.0:7070 for all "
+                    "of its networks",
                     arguments.listen));
   bool made = false;
   if (!arguments.secret_file.empty()) compositor::read_or_make_secret(arguments.secret_file, made);
   if (made)
-    fmt::print("understudy: made the secret {0}; copy it to where viewers are: scp {0} HOST:\n",
+    fmt::print("understudy: created the secret {0}; copy it to the machines of the viewers: scp {0} HOST:\n",
                std::filesystem::absolute(arguments.secret_file).string());
   ListenerPlan plan{.address = *address,
                     .secret_file = arguments.secret_file,
@@ -115,11 +115,11 @@ void look_after(Frontends& frontends) {
     if (!process) return;
     const std::optional<Ending> ending = process->poll_ending();
     if (!ending) return;
-    logging::log(logging::Level::error, "{} {}; start serve again", what, ending->text());
+    logging::log(logging::Level::error, "{} {}; start understudy serve again", what, ending->text());
     process.reset();
   };
-  ended(frontends.server, "the GL server, which draws for viewers of other machines,");
-  ended(frontends.listener.process, "the listener, which lets clients of other machines in,");
+  ended(frontends.server, "the GL server, which draws for viewers on other machines,");
+  ended(frontends.listener.process, "the listener, which accepts clients from other machines,");
 }
 
 /// Returns when a signal asks for the end. The nodes and the socket are gone then.
@@ -127,7 +127,8 @@ int serve(const ServeArguments& arguments) {
   const Installation installation = this_installation();
   const Placement placement = placement_of({arguments.nodes, arguments.hostfile}, current_environment());
   if (placement.ranks == 0)
-    throw std::runtime_error("how many nodes? Give -n N, or --hostfile FILE with the hosts that they run on");
+    throw std::runtime_error(
+        "the number of nodes is missing; give -n N, or --hostfile FILE with the hosts to run them on");
   SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGCHLD});
   const RunFolder folder = arguments.folder.empty() ? RunFolder() : RunFolder(arguments.folder);
   if (const std::string obstacle = obstacle_to_nodes(installation); !obstacle.empty()) {
@@ -155,9 +156,10 @@ int serve(const ServeArguments& arguments) {
     fmt::print("understudy: {} nodes at {}; use them with: understudy run --connect {} -- viewer args…\n",
                nodes.ranks(), socket.string(), socket.string());
     if (frontends.listener.process)
-      fmt::print("understudy: and at {0}; use them with: understudy run {1}--connect {0} {2} -- viewer args…\n",
-                 frontends.listener.address.text(), frontends.server ? "[--remote] " : "",
-                 arguments.secret_file.empty() ? "--key FILE --server-key FILE.pub" : "--secret-file FILE");
+      fmt::print(
+          "understudy: also at {0}; use them with: understudy run {1}--connect {0} {2} -- viewer args…\n",
+          frontends.listener.address.text(), frontends.server ? "[--remote] " : "",
+          arguments.secret_file.empty() ? "--key FILE --server-key FILE.pub" : "--secret-file FILE");
     std::fflush(stdout);
   }
   return 0;
@@ -166,8 +168,8 @@ int serve(const ServeArguments& arguments) {
 void add_group_options(CLI::App& subcommand, ServeArguments& arguments) {
   subcommand
       .add_option("-n,--nodes", arguments.nodes,
-                  "number of MPI ranks, on this machine or on those of --hostfile; default: the slots of the "
-                  "hostfile, or the tasks of a Slurm allocation")
+                  "number of MPI ranks, on this machine or on the hosts of --hostfile; default: the slots of "
+                  "the hostfile, or the tasks of the Slurm allocation")
       ->check(CLI::Range(1, spu::max_nodes));
   add_hostfile_option(subcommand, arguments.hostfile);
   add_backend_option(subcommand, arguments.choices.backend);
@@ -177,22 +179,23 @@ void add_group_options(CLI::App& subcommand, ServeArguments& arguments) {
   add_balance_option(subcommand, arguments.choices.balance);
   subcommand
       .add_option("--socket", arguments.socket,
-                  "where viewers find them; without XDG_RUNTIME_DIR: in a private folder, which is told")
+                  "path of the Unix socket that viewers connect to; without XDG_RUNTIME_DIR, the default is in "
+                  "a private folder and is printed")
       ->capture_default_str();
   subcommand
       .add_option("--folder", arguments.folder,
-                  "take over DIR, empty and with mode 0700, put the socket in it, and remove it at the end")
+                  "put the socket into DIR, which must be empty and have mode 0700, and remove DIR at the end")
       ->type_name("DIR")
       ->check(CLI::ExistingDirectory);
   subcommand
       .add_option("--data", arguments.choices.data,
-                  "folders that clients may load volumes from (understudy render, view); without: none, "
-                  "clients send what is drawn")
+                  "folders that clients may load volume files from (understudy render, view); default: none, "
+                  "only volumes that clients send are rendered")
       ->type_name("FOLDER")
       ->check(CLI::ExistingDirectory);
   subcommand
       .add_option("--image-time", arguments.choices.image_ms,
-                  "how long one image may take, in milliseconds; 0: as long as its client waits for it")
+                  "time limit of one image, in milliseconds; 0: as long as its client waits for it")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
 }
@@ -201,26 +204,25 @@ void add_group_options(CLI::App& subcommand, ServeArguments& arguments) {
 CLI::Option* add_listener_options(CLI::App& subcommand, ServeArguments& arguments) {
   subcommand
       .add_option("--secret-file", arguments.secret_file,
-                  "with --listen: the secret that clients must have; created if the file does not exist")
+                  "with --listen: file of the secret that clients must have; created if it does not exist")
       ->type_name("FILE");
-  CLI::Option* listen =
-      subcommand
-          .add_option("--listen", arguments.listen,
-                      "accept clients of other machines at HOST:PORT. Without HOST only this machine, 0.0.0.0 "
-                      "all of its networks; port 0 takes any that is free")
-          ->type_name("[HOST]:PORT");
+  CLI::Option* listen = subcommand
+                            .add_option("--listen", arguments.listen,
+                                        "accept clients over TCP at HOST:PORT; without HOST on this machine "
+                                        "only, with 0.0.0.0 on all of its networks; port 0 takes any free port")
+                            ->type_name("[HOST]:PORT");
   CLI::Option* key = subcommand
                          .add_option("--key", arguments.key_file,
-                                     "with --listen: this server's own key (understudy key FILE), beside or in "
-                                     "place of a secret")
+                                     "with --listen: the key of this server (understudy key FILE), in addition "
+                                     "to a secret or instead of one")
                          ->type_name("FILE")
                          ->needs(listen);
-  CLI::Option* clients =
-      subcommand
-          .add_option("--clients", arguments.clients,
-                      "with --key: the public keys of clients that may come in, a FILE.pub a line")
-          ->type_name("FILE")
-          ->needs(key);
+  CLI::Option* clients = subcommand
+                             .add_option("--clients", arguments.clients,
+                                         "with --key: file of the public keys of the clients that are "
+                                         "accepted, one line of a FILE.pub for each")
+                             ->type_name("FILE")
+                             ->needs(key);
   key->needs(clients);
   return listen;
 }
@@ -233,24 +235,24 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
   // A name that others could guess needs a folder that they cannot write into.
   if (const auto runtime = compositor::private_runtime_folder())
     arguments->socket = *runtime / "understudy-nodes.sock";
-  CLI::App* subcommand = app.add_subcommand("serve", "keeps render nodes running for viewers that come and go");
+  CLI::App* subcommand = app.add_subcommand("serve", "keeps render nodes running, for viewers to connect to");
   add_group_options(*subcommand, *arguments);
   add_exchange_options(*subcommand, arguments->choices);
   add_tiles_option(*subcommand, arguments->tiles);
   CLI::Option* listen = add_listener_options(*subcommand, *arguments);
   subcommand
       ->add_flag("--gl-server", arguments->server,
-                 "also execute the OpenGL calls of viewers without OpenGL (understudy run --remote --connect "
-                 "HOST:PORT)")
+                 "also start a GL server, which executes the OpenGL calls of viewers without OpenGL "
+                 "(understudy run --remote --connect HOST:PORT)")
       ->needs(listen);
   subcommand
       ->add_flag("--plain", arguments->plain,
-                 "let clients with --plain that connect within this machine (through ssh, say) do without "
-                 "encryption; all others are encrypted")
+                 "allow unencrypted connections of clients with --plain within this machine (for example "
+                 "through ssh); all others are encrypted")
       ->needs(listen);
   add_gl_server_option(*subcommand, arguments->server_opengl);
   add_sandbox_option(*subcommand, arguments->sandbox);
-  subcommand->add_option("--while", arguments->while_process, "end when the process PID has ended")
+  subcommand->add_option("--while", arguments->while_process, "end when the process PID ends")
       ->type_name("PID")
       ->check(CLI::PositiveNumber);
   subcommand->callback([arguments, &chosen] {

@@ -26,7 +26,7 @@ void prepare_trace(RunArguments& arguments) {
 std::string trace_summary(const std::filesystem::path& trace) {
   const std::string name = trace.string();
   if (!std::filesystem::exists(trace))
-    return fmt::format("{} was not written: the viewer made no OpenGL context that was seen", name);
+    return fmt::format("{} was not written: no OpenGL context of the viewer was intercepted", name);
   try {
     spu::TraceReader reader(trace);
     std::uint64_t frames = 0;

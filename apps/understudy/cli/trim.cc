@@ -166,8 +166,7 @@ void trim(const TrimPlan& plan) {
   std::string why;
   for (const std::string& trouble : troubles) why += "; " + trouble;
   throw std::runtime_error(fmt::format(
-      "frames {} and later depend on images before them that cannot be brought back{}; trim from an earlier "
-      "frame",
+      "frames {} and later depend on earlier images that cannot be restored{}; trim from an earlier frame",
       first, why));
 }
 
@@ -175,12 +174,10 @@ void add_trim(CLI::App& app, std::function<int()>& chosen) {
   const auto plan = std::make_shared<TrimPlan>();
   const auto frames = std::make_shared<std::string>();
   CLI::App* subcommand =
-      app.add_subcommand("trim", "writes a shorter trace that shows the same frames, from 1");
-  subcommand->add_option("trace", plan->trace, "the file")->required()->check(CLI::ExistingFile);
-  subcommand->add_option("--frames", *frames, "the frames to keep, counted from 1")
-      ->required()
-      ->type_name("A-B");
-  subcommand->add_option("-o,--out", plan->out, "the shorter trace")
+      app.add_subcommand("trim", "writes a shorter trace that shows only some of the frames, numbered from 1");
+  subcommand->add_option("trace", plan->trace, "trace file")->required()->check(CLI::ExistingFile);
+  subcommand->add_option("--frames", *frames, "frames to keep, counted from 1")->required()->type_name("A-B");
+  subcommand->add_option("-o,--out", plan->out, "trace file to write")
       ->required()
       ->type_name("OUT")
       ->check(can_be_written());
@@ -189,7 +186,7 @@ void add_trim(CLI::App& app, std::function<int()>& chosen) {
     chosen = [plan] {
       std::error_code none;
       if (std::filesystem::equivalent(plan->trace, plan->out, none))
-        throw std::runtime_error("the shorter trace needs a name of its own; give another one to -o");
+        throw std::runtime_error("the shorter trace cannot overwrite the trace itself; give -o another name");
       return play_guarded(plan->trace, [&](PlayedRecord& played) {
         plan->played = &played;
         trim(*plan);

@@ -17,7 +17,7 @@ namespace {
 std::string about(const spu::UnitDescription& unit) {
   std::string text = fmt::format("{:8} {}", unit.name, unit.help);
   if (unit.needs != nullptr) text += fmt::format("; needs {} before it", unit.needs);
-  if (unit.position == spu::UnitPosition::repeatable) text += "; may stand several times";
+  if (unit.position == spu::UnitPosition::repeatable) text += "; may be used several times in a chain";
   return text + "\n";
 }
 
@@ -51,7 +51,7 @@ std::string units_text() {
   std::string text;
   for (const spu::UnitDescription* unit : spu::unit_table()) text += about_all(*unit);
   return text + plugins_text() +
-         "\nA chain names them from the application to the driver, options in parentheses:\n"
+         "\nA chain lists units from the application to the driver, with their options in parentheses:\n"
          "  understudy run --chain 'perf(file=calls.json) track volume driver' -- viewer args…\n"
          "  understudy run --chain @chain.json -- viewer args…\n"
          R"(  chain.json: {"chain": [{"unit": "perf", "file": "calls.json"}, "track", "volume", "driver"]})"

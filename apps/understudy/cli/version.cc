@@ -12,13 +12,13 @@ namespace understudy::launcher {
 std::string version_text() {
   const Installation here = this_installation();
   const std::string nodes =
-      std::filesystem::exists(here.node()) ? here.node().string() : "not built (there was no MPI)";
+      std::filesystem::exists(here.node()) ? here.node().string() : "not built (without MPI)";
   return fmt::format(
       "understudy {} ({}), built by {}\n"
       "  instruction set  {}\n"
       "  libraries        {}\n"
       "  render nodes     {}\n"
-      "`understudy doctor` tells what works on this machine.",
+      "`understudy doctor` checks what works on this machine.",
       version_number(), commit(), compiler(), volume::instruction_set(), here.libraries.string(), nodes);
 }
 

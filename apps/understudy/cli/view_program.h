@@ -10,8 +10,7 @@
 
 namespace understudy::launcher {
 
-constexpr const char* view_description =
-    "a volume in a file to look at, in a browser or a window, without OpenGL";
+constexpr const char* view_description = "shows a volume file in a browser or a window, without OpenGL";
 
 /// The subcommand, which takes whatever follows. Chosen, it gives this process to understudy-view with these
 /// `arguments`, and throws std::runtime_error where that is not to be had.

@@ -45,7 +45,7 @@ ConfiguredOption option_of(const fs::path& file, const std::string& name, const 
   } else if (const auto* truth = node.as_boolean()) {
     option.value = truth->get() ? "on" : "off";
   } else {
-    fail(file, node.source(), fmt::format("{} must be a text, a number, true or false", name));
+    fail(file, node.source(), fmt::format("{} must be a string, a number, true or false", name));
   }
   return option;
 }

@@ -110,7 +110,7 @@ std::string under_understudy(const std::string& entry, const fs::path& understud
     text += line;
     text += '\n';
   }
-  if (!runs) throw std::runtime_error("it is no entry of an application: it has no line Exec=");
+  if (!runs) throw std::runtime_error("not an application entry: there is no line Exec=");
   return text;
 }
 

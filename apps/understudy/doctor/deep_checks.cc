@@ -30,11 +30,11 @@ struct Way {
 };
 
 std::vector<Way> ways() {
-  constexpr const char* loader = "another injection method; docs/install.md tells what each catches";
+  constexpr const char* loader = "use another injection method; docs/install.md lists what each intercepts";
   return {{"run, audit", {"--injection", "audit"}, loader},
           {"run, preload", {"--injection", "preload"}, loader},
           {"run, folder", {"--injection", "folder"}, loader},
-          {"run, two nodes", {"-n", "2"}, "the lines MPI and nodes above"},
+          {"run, two nodes", {"-n", "2"}, "see the lines MPI and nodes above"},
           {"run, GL server", {"--remote"}, "apt install libegl1 libegl-mesa0 libgl1-mesa-dri"}};
 }
 
@@ -69,7 +69,7 @@ Finding tried(const Way& way, const std::filesystem::path& volume, const std::fi
   const auto start = std::chrono::steady_clock::now();
   ChildProcess run(command);
   const auto ending = run.wait_for_ending(patience_ms);
-  if (!ending) return {false, fmt::format("no end after {} s", patience_ms / 1000)};
+  if (!ending) return {false, fmt::format("did not end within {} s", patience_ms / 1000)};
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   const std::string said = last_line(log);
   if (ending->exit_status() != 0) return {false, fmt::format("{}: {}", ending->text(), said)};

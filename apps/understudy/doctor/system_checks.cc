@@ -93,7 +93,7 @@ Finding look_at_glx() {
       gl.function<decltype(&glXCreateContext)>("glXCreateContext")(display, visual, nullptr, True);
   if (context == nullptr ||
       gl.function<decltype(&glXMakeCurrent)>("glXMakeCurrent")(display, window, context) == False) {
-    return {false, "the X server gives no OpenGL context"};
+    return {false, "the X server provides no OpenGL context"};
   }
   return described(gl.function<GetString>("glGetString"));
 }
@@ -114,17 +114,17 @@ Finding look_at_osmesa() {
   const OSMesaContext context = osmesa.create_context({.depth_bits = 24});
   std::array<GLubyte, 16 * 16 * 4> image{};
   if (context == nullptr || !osmesa.MakeCurrent(context, image.data(), GL_UNSIGNED_BYTE, 16, 16))
-    return {false, "libOSMesa gives no OpenGL context"};
+    return {false, "libOSMesa provides no OpenGL context"};
   return described(reinterpret_cast<GetString>(osmesa.GetProcAddress("glGetString")));
 }
 
 Finding look_at_mpi() {
   const auto family = mpi_of_nodes();
-  if (!family) return {false, "there was no MPI when this was built"};
+  if (!family) return {false, "Understudy was built without MPI"};
   const auto found = find_mpi_launcher(*family);
   if (const auto* const obstacle = std::get_if<std::string>(&found)) return {false, *obstacle};
   const auto& launcher = std::get<MpiLauncher>(found);
-  return {true, fmt::format("{} at {}; between hosts it encrypts nothing", launcher.version.text,
+  return {true, fmt::format("{} at {}; its traffic between hosts is not encrypted", launcher.version.text,
                             launcher.program.string())};
 }
 
@@ -146,7 +146,7 @@ Finding look_at_injection_methods() {
 std::vector<std::string> escapes() {
   std::vector<std::string> found;
   if (open("/proc/self/status", O_RDONLY | O_CLOEXEC) >= 0) found.emplace_back("files can be opened");
-  if (socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0) >= 0) found.emplace_back("sockets can be made");
+  if (socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0) >= 0) found.emplace_back("sockets can be created");
   if (ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) == 0) found.emplace_back("processes can be traced");
   // Last: where it works, another program is here.
   std::array<char*, 1> none{};
@@ -158,12 +158,12 @@ std::vector<std::string> escapes() {
 Finding look_at_sandbox() {
   const SandboxState state = Sandbox({}).close(Renderer::cpu);
   if (!state.obstacle.empty())
-    return {false, state.obstacle + "; run --remote and serve --gl-server have none"};
+    return {false, state.obstacle + "; run --remote and serve --gl-server work without a sandbox"};
   if (const auto found = escapes(); !found.empty()) return {false, fmt::format("{}", fmt::join(found, ", "))};
   const std::string landlock =
       state.landlock > 0 ? fmt::format("and Landlock {}", state.landlock) : "alone; " + state.no_landlock;
   return {true,
-          fmt::format("seccomp {}: processes of GL servers open no files, start no programs, make no sockets",
+          fmt::format("seccomp {}: processes of GL servers cannot open files, start programs or create sockets",
                       landlock)};
 }
 
@@ -174,11 +174,11 @@ constexpr std::array checks{
     Check{"GLX", look_at_glx, "apt install libgl1 libglx-mesa0 libgl1-mesa-dri"},
     Check{"EGL", look_at_egl, "apt install libegl1 libegl-mesa0 libgl1-mesa-dri"},
     Check{"OSMesa", look_at_osmesa, "apt install libosmesa6"},
-    Check{
-        "MPI", look_at_mpi,
-        "the MPI that the nodes were built with, or nodes that are built with the one here (docs/install.md)"},
+    Check{"MPI", look_at_mpi,
+          "install the MPI that the nodes were built with, or build the nodes with the installed one "
+          "(docs/install.md)"},
     Check{"sandbox", look_at_sandbox,
-          "a kernel with CONFIG_SECCOMP_FILTER, or a container that lets it be used"},
+          "use a kernel with CONFIG_SECCOMP_FILTER, or a container that permits seccomp filters"},
     Check{"nodes", look_at_nodes, "apt install libopenmpi-dev openmpi-bin && ./run build"},
 };
 
@@ -212,9 +212,8 @@ Finding look_apart(const Check& check) {
   int status = 0;
   waitpid(probe, &status, 0);
   if (message.empty()) {
-    return {false, WIFSIGNALED(status)
-                       ? fmt::format("its library was killed by {}", strsignal(WTERMSIG(status)))
-                       : std::string("its library ended the process")};
+    return {false, WIFSIGNALED(status) ? fmt::format("its library crashed: {}", strsignal(WTERMSIG(status)))
+                                       : std::string("its library ended the process")};
   }
   return {message.front() == '+', message.substr(1)};
 }

@@ -16,7 +16,7 @@ constexpr std::uintmax_t max_file_bytes = std::uintmax_t(1) << 20;
 double number(const nlohmann::json& from, const char* name) {
   const auto found = from.find(name);
   if (found == from.end() || !found->is_number())
-    throw std::runtime_error(fmt::format("'{}' is missing or no number", name));
+    throw std::runtime_error(fmt::format("'{}' is missing or not a number", name));
   return found->get<double>();
 }
 
@@ -26,9 +26,10 @@ volume::TransferControlPoints::ControlPoint control_point_in(const nlohmann::jso
   point.opacity = number(from, "opacity");
   const auto colour = from.find("colour");
   if (colour == from.end() || !colour->is_array() || colour->size() != 3)
-    throw std::runtime_error("'colour' is missing or not three numbers");
+    throw std::runtime_error("'colour' is missing or not a list of three numbers");
   for (std::size_t k = 0; k < 3; ++k) {
-    if (!(*colour)[k].is_number()) throw std::runtime_error("'colour' is missing or not three numbers");
+    if (!(*colour)[k].is_number())
+      throw std::runtime_error("'colour' is missing or not a list of three numbers");
     point.colour[k] = (*colour)[k].get<double>();
   }
   return point;
@@ -40,10 +41,10 @@ volume::TransferControlPoints control_points_in(const nlohmann::json& json) {
   volume::TransferControlPoints control_points;
   const std::string positions = json.value("positions", "range");
   if (positions != "range" && positions != "values")
-    throw std::runtime_error(fmt::format("'positions' is '{}', neither range nor values", positions));
+    throw std::runtime_error(fmt::format("'positions' is '{}'; it must be range or values", positions));
   control_points.of_values = positions == "values";
   const auto list = json.find("knots");
-  if (list == json.end() || !list->is_array()) throw std::runtime_error("there is no list 'knots'");
+  if (list == json.end() || !list->is_array()) throw std::runtime_error("the list 'knots' is missing");
   for (const nlohmann::json& entry : *list) {
     try {
       control_points.control_points.push_back(control_point_in(entry));
@@ -59,7 +60,7 @@ volume::TransferControlPoints control_points_in(const nlohmann::json& json) {
 volume::TransferControlPoints read_control_points(const std::string& file_or_name) {
   if (!std::filesystem::exists(file_or_name)) return volume::control_points_named(file_or_name);
   try {
-    if (!std::filesystem::is_regular_file(file_or_name)) throw std::runtime_error("is no file; name one");
+    if (!std::filesystem::is_regular_file(file_or_name)) throw std::runtime_error("not a regular file");
     if (std::filesystem::file_size(file_or_name) > max_file_bytes)
       throw std::runtime_error(
           fmt::format("has more than {} bytes; give fewer control points", max_file_bytes));
@@ -67,8 +68,8 @@ volume::TransferControlPoints read_control_points(const std::string& file_or_nam
     return control_points_in(nlohmann::json::parse(file));
   } catch (const nlohmann::json::exception& error) {
     throw std::runtime_error(
-        fmt::format("{}: not a transfer function: {}; as in {{\"knots\": [{{\"at\": 0, \"colour\": "
-                    "[0, 0, 0], \"opacity\": 0}}, …]}}",
+        fmt::format("{}: not a transfer function: {}; expected {{\"knots\": [{{\"at\": 0, \"colour\": [0, 0, "
+                    "0], \"opacity\": 0}}, …]}}",
                     file_or_name, error.what()));
   } catch (const std::exception& error) {
     throw std::runtime_error(fmt::format("{}: not a transfer function: {}", file_or_name, error.what()));

@@ -9,11 +9,16 @@
 namespace understudy::launcher {
 
 void add_file_hints(CLI::App& subcommand, FileHintOptions& hints) {
-  subcommand.add_option("--volume-size", hints.size, "of raw scalars")->type_name("X Y Z")->expected(3);
-  subcommand.add_option("--type", hints.type, "of raw scalars: u8, i8, … f64");
-  subcommand.add_flag("--big-endian", hints.big_endian, "of raw scalars");
+  subcommand.add_option("--volume-size", hints.size, "size of a raw volume, in voxels")
+      ->type_name("X Y Z")
+      ->expected(3);
+  subcommand.add_option(
+      "--type", hints.type,
+      "type of the scalars of a raw volume: u8, i8, u16, i16, u32, i32, u64, i64, f32 or f64");
+  subcommand.add_flag("--big-endian", hints.big_endian,
+                      "the scalars of a raw volume have the most significant byte first");
   subcommand
-      .add_option("--channel", hints.channel, "of an image with several: which one is shown, counted from 0")
+      .add_option("--channel", hints.channel, "channel to read, of an image with several, counted from 0")
       ->type_name("N")
       ->check(CLI::NonNegativeNumber);
 }

@@ -48,7 +48,8 @@ ImageSettings image_of(const SceneArguments& arguments) {
   for (const double side : size)
     if (!(side >= 1 && side <= max_image_side))
       throw std::invalid_argument(
-          fmt::format("an image of {} pixels; give 1 to {} a side", arguments.size, max_image_side));
+          fmt::format("'{}' is not the size of an image; each side must be 1 to {} pixels", arguments.size,
+                      max_image_side));
   image.width = int(size[0]);
   image.height = int(size[1]);
   image.step = arguments.step;
@@ -60,17 +61,15 @@ ImageSettings image_of(const SceneArguments& arguments) {
 
 void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
   subcommand
-      .add_option(
-          "VOLUME", arguments.volumes,
-          "raw (size and type in its name: head_256x256x113_int16be.raw.gz), NRRD, NIfTI, MetaImage, DICOM, "
-          "TIFF, "
-          "VTI or UVOL, a folder of DICOM or TIFF slices or of Zarr, or "
-          "synthetic:XxYxZ[:u8|u16|f32[:shells|lobes|gyroid]]; several, a pattern ('step_*.vti'), or a file "
-          "that holds several, are the time steps of a series")
+      .add_option("VOLUME", arguments.volumes,
+                  "volume file: raw (with size and type in its name: head_256x256x113_int16be.raw.gz), NRRD, "
+                  "NIfTI, MetaImage, DICOM, TIFF, VTI or UVOL, a folder of DICOM or TIFF slices or of Zarr, or "
+                  "synthetic:XxYxZ[:u8|u16|f32[:shells|lobes|gyroid]]; several files, a pattern ('step_*.vti') "
+                  "or a file of several volumes are the time steps of a series")
       ->required();
   subcommand
       .add_option("--time-step", arguments.time_step,
-                  "of a series: which of them is shown first, counted from 0")
+                  "time step of a series to show (to show first, in `understudy view`), counted from 0")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   subcommand
@@ -81,25 +80,30 @@ void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
   add_shading_options(subcommand, arguments.shading);
   subcommand
       .add_option("--camera", arguments.camera,
-                  "azimuth and elevation in degrees, distance in half diagonals, and degrees by which it "
-                  "rolls (180: z is down)")
+                  "position of the camera: azimuth and elevation in degrees, distance in half diagonals of the "
+                  "volume, and roll in degrees (180: z points down)")
       ->type_name("A,E,D[,R]")
       ->capture_default_str();
-  subcommand.add_option("--size", arguments.size, "of the image")->type_name("WxH")->capture_default_str();
-  subcommand.add_option("--step", arguments.step, "between samples, in voxels")->capture_default_str();
+  subcommand.add_option("--size", arguments.size, "size of the image, in pixels")
+      ->type_name("WxH")
+      ->capture_default_str();
+  subcommand.add_option("--step", arguments.step, "distance between samples along a ray, in voxels")
+      ->capture_default_str();
   subcommand
       .add_option("--termination", arguments.termination,
-                  "early ray termination: a ray ends where less than this shows through")
+                  "early ray termination: a ray ends where its remaining transparency is below this value")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   add_file_hints(subcommand, arguments.raw);
-  subcommand.add_option("--spacing", arguments.spacing, "between scalars, instead of the file's")
+  subcommand
+      .add_option("--spacing", arguments.spacing,
+                  "distances between scalars along x, y and z, instead of those in the file")
       ->type_name("X Y Z")
       ->expected(3)
       ->check(CLI::PositiveNumber);
-  subcommand.add_option("--texels", arguments.texels, "what is kept of each scalar")
+  subcommand.add_option("--texels", arguments.texels, "type of the texels that scalars are converted to")
       ->check(CLI::IsMember({"u8", "u16", "f32"}));
-  subcommand.add_option("--range", arguments.range, "values that the texels of u8 and u16 span")
+  subcommand.add_option("--range", arguments.range, "range of values that u8 and u16 texels represent")
       ->type_name("LOW,HIGH");
 }
 
@@ -147,29 +151,31 @@ Series described_series(const std::vector<std::string>& files, const volume::Fil
     const volume::FileDescription one = volume::open_volume(file, hints, {}, headers)->description();
     append_steps(series.steps, file, one.time_steps);
     if (series.steps.size() > volume::max_time_steps)
-      throw volume::FileError(fmt::format("{}: with it the series has {} time steps (at most {})", file,
-                                          series.steps.size(), volume::max_time_steps));
+      throw volume::FileError(fmt::format("{}: with this file the series has {} time steps; the limit is {}",
+                                          file, series.steps.size(), volume::max_time_steps));
     if (&file == &files.front()) {
       first = one;
       continue;
     }
     if (one.size != first.size || one.type != first.type)
       throw volume::FileError(
-          fmt::format("{}: a time step of {} x {} x {} of {}, where {} is of {} x {} x {} of {}; give steps of "
-                      "one size and type",
+          fmt::format("{}: this time step has {} x {} x {} scalars of type {}, but {} has {} x {} x {} of type "
+                      "{}; give time steps of the same size and type",
                       file, one.size[0], one.size[1], one.size[2], volume::name_of(one.type), files.front(),
                       first.size[0], first.size[1], first.size[2], volume::name_of(first.type)));
     if (one.spacing != first.spacing && !spacing_is_given)
-      throw volume::FileError(fmt::format(
-          "{}: its scalars lie apart otherwise than those of {}; give steps with one spacing, or --spacing",
-          file, files.front()));
-    if (one.detail && first.detail && one.detail->volume_size != first.detail->volume_size)
       throw volume::FileError(
-          fmt::format("{}: a level of a volume of another size than that of {}", file, files.front()));
+          fmt::format("{}: the spacing of its scalars differs from that of {}; give time steps with the same "
+                      "spacing, or --spacing",
+                      file, files.front()));
+    if (one.detail && first.detail && one.detail->volume_size != first.detail->volume_size)
+      throw volume::FileError(fmt::format(
+          "{}: this level belongs to a volume of a different size than that of {}", file, files.front()));
     if (one.scale != first.scale || one.offset != first.offset)
       throw volume::FileError(
-          fmt::format("{}: its scalars mean other values than those of {}; give steps with one scale", file,
-                      files.front()));
+          fmt::format("{}: the scale or offset of its values differs from that of {}; give time steps with the "
+                      "same scale and offset",
+                      file, files.front()));
     if (first.detail && one.detail) first.detail->error = std::max(first.detail->error, one.detail->error);
     if (first.values && one.values)
       first.values = {std::min((*first.values)[0], (*one.values)[0]),
@@ -190,7 +196,7 @@ FileScene scene_of(const SceneArguments& arguments) {
   hints.level = arguments.level;
   Series series = described_series(files, hints, !arguments.spacing.empty());
   if (std::size_t(arguments.time_step) >= series.steps.size())
-    throw std::invalid_argument(fmt::format("there is no time step {}; there are {}, counted from 0",
+    throw std::invalid_argument(fmt::format("there is no time step {}; the series has {}, counted from 0",
                                             arguments.time_step, series.steps.size()));
   FileScene scene = scene_of(arguments, series.description);
   scene.load.hints = hints;
@@ -210,7 +216,7 @@ FileScene scene_of(const SceneArguments& arguments, const volume::FileDescriptio
   if (const auto& detail = described.detail) {
     if (arguments.error_bound)
       throw std::invalid_argument(
-          "--error-bound says nothing of what a level of detail leaves out: leave out --level");
+          "--error-bound does not include the error of a level of detail; leave out --level");
     const double apart = double(1 << detail->level);
     // A step leads from sample to sample of the level.
     scene.image.step *= apart;
@@ -259,8 +265,8 @@ namespace {
 
 std::invalid_argument no_bound() {
   return std::invalid_argument(
-      "--error-bound is for samples of a transfer function, composed by over: leave out --method, --operator, "
-      "--surface, --no-volume and --light");
+      "--error-bound requires post-classified samples that are composited front to back; leave out --method, "
+      "--operator, --surface, --no-volume and --light");
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ std::vector<double> numbers(const std::string& text, char separator, std::size_t
     at = stop == end ? end : stop + 1;
   }
   if (values.size() < count || values.size() > count + more)
-    throw std::invalid_argument(fmt::format("'{}' is not {} numbers as in {}", text, count, example));
+    throw std::invalid_argument(
+        fmt::format("'{}' is not a list of {} numbers, as in {}", text, count, example));
   return values;
 }
 

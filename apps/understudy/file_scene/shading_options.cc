@@ -39,8 +39,8 @@ std::optional<std::array<float, 3>> colour_in(std::string_view text) {
 SurfaceChoice surface_in(const std::string& text) {
   const auto fail = [&](const char* what) {
     throw std::invalid_argument(
-        fmt::format("--surface {}: {}; give a value of the volume or a place in its range, and then, if "
-                    "wanted, colour and opacity: 1150 or 40%,#e8c090,0.5",
+        fmt::format("--surface {}: {}; give a value of the volume or a percentage of its range, optionally "
+                    "followed by colour and opacity: 1150 or 40%,#e8c090,0.5",
                     text, what));
   };
   std::vector<std::string_view> parts;
@@ -49,21 +49,22 @@ SurfaceChoice surface_in(const std::string& text) {
     parts.push_back(std::string_view(text).substr(at, end - at));
     at = end + 1;
   }
-  if (parts.size() > 3) fail("has more than three parts");
+  if (parts.size() > 3) fail("there are more than three parts");
   SurfaceChoice surface{0, parts[0].ends_with('%'), plain_surface};
   if (surface.of_range) parts[0].remove_suffix(1);
   const auto at = number_in(parts[0]);
-  if (!at) fail("its value is no number");
+  if (!at) fail("the value is not a number");
   surface.at = surface.of_range ? *at / 100 : *at;
-  if (surface.of_range && !(surface.at > 0 && surface.at <= 1)) fail("its place is not between 0% and 100%");
+  if (surface.of_range && !(surface.at > 0 && surface.at <= 1))
+    fail("the percentage must be above 0% and at most 100%");
   if (parts.size() > 1) {
     const auto colour = colour_in(parts[1]);
-    if (!colour) fail("its colour is not of the form #rrggbb");
+    if (!colour) fail("the colour does not have the form #rrggbb");
     std::ranges::copy(*colour, surface.colour.begin());
   }
   if (parts.size() > 2) {
     const auto opacity = number_in(parts[2]);
-    if (!opacity || !(*opacity > 0 && *opacity <= 1)) fail("its opacity is not above 0 and up to 1");
+    if (!opacity || !(*opacity > 0 && *opacity <= 1)) fail("the opacity must be above 0 and at most 1");
     surface.colour[3] = float(*opacity);
   }
   return surface;
@@ -76,8 +77,8 @@ volume::Light light_of(const ShadingArguments& arguments, const volume::Vec3& ex
   if (!arguments.light_from.empty()) {
     const std::vector<double> angles = numbers(arguments.light_from, ',', 2, "45,60");
     if (!(std::isfinite(angles[0]) && std::abs(angles[1]) <= 90))
-      throw std::invalid_argument(
-          fmt::format("--light-from {}: give degrees, -90 to 90 for the second", arguments.light_from));
+      throw std::invalid_argument(fmt::format(
+          "--light-from {}: give two angles in degrees, the second from -90 to 90", arguments.light_from));
     const double azimuth = angles[0] * std::numbers::pi / 180, elevation = angles[1] * std::numbers::pi / 180;
     light.direction = {std::cos(elevation) * std::sin(azimuth), -std::cos(elevation) * std::cos(azimuth),
                        std::sin(elevation)};
@@ -99,49 +100,51 @@ volume::Light light_of(const ShadingArguments& arguments, const volume::Vec3& ex
 
 void add_shading_options(CLI::App& subcommand, ShadingArguments& arguments) {
   subcommand
-      .add_option(
-          "--method", arguments.method,
-          "what is classified: each sample (post-classified), the segment between two samples (pre-integrated, "
-          "needs fewer samples), or samples whose distance adapts to the transfer function (adaptive)")
+      .add_option("--method", arguments.method,
+                  "classification along a ray: of each sample (post-classified), of the segment between two "
+                  "samples (pre-integrated; needs fewer samples), or of samples whose distance adapts to the "
+                  "transfer function (adaptive)")
       ->check(CLI::IsMember({"post-classified", "pre-integrated", "adaptive"}).description(""))
       ->type_name("post-classified|pre-integrated|adaptive")
       ->capture_default_str();
   subcommand
       .add_option("--cut-at-bricks", arguments.cut_at_bricks,
-                  "with pre-integrated: end segments at the faces of bricks of EDGE voxels (a multiple of 8), "
-                  "for comparison with renderers whose bricks share no more than their faces")
+                  "with --method pre-integrated: end segments at the faces of bricks of EDGE voxels (a "
+                  "multiple of 8), for comparison with renderers whose bricks share only their faces")
       ->type_name("EDGE");
-  subcommand.add_option("--tolerance", arguments.tolerance, "of adaptive steps: the error that each may have")
+  subcommand
+      .add_option("--tolerance", arguments.tolerance, "with --method adaptive: largest error of each step")
       ->check(CLI::PositiveNumber.description(""))
       ->type_name("ERROR")
       ->capture_default_str();
   subcommand
       .add_option("--operator", arguments.op,
-                  "how the samples of a ray become a pixel: composited front to back (over), the largest "
-                  "(max), their sum (add), or the first that is not transparent, shown opaque (first-hit)")
+                  "combination of the samples of a ray: composited front to back (over), their maximum (max), "
+                  "their sum (add), or the first sample that is not transparent, shown opaque (first-hit)")
       ->check(CLI::IsMember({"over", "max", "add", "first-hit"}).description(""))
       ->type_name("over|max|add|first-hit")
       ->capture_default_str();
   subcommand
       .add_option("--surface", arguments.surfaces,
-                  "an iso-surface: a value, or a place in the range of the volume (40%), with a colour #rrggbb "
-                  "and an opacity; may be given several times")
+                  "iso-surface at a value, or at a percentage of the volume's range of values (40%), "
+                  "optionally with a colour #rrggbb and an opacity; may be given several times")
       ->type_name("VALUE[,COLOUR[,OPACITY]]")
       ->allow_extra_args(false);
-  subcommand.add_flag("--no-volume", arguments.no_volume, "show surfaces alone, without the volume");
+  subcommand.add_flag("--no-volume", arguments.no_volume, "show only iso-surfaces, not the volume itself");
   subcommand
       .add_option("--light", arguments.light,
-                  "Blinn-Phong lighting of the volume and its surfaces (all) or of surfaces alone (surfaces); "
-                  "the light is at the eye unless --light-from is given")
+                  "apply Blinn-Phong lighting to the volume and its iso-surfaces (all), or to iso-surfaces "
+                  "only (surfaces); the light is at the eye unless --light-from is given")
       ->check(CLI::IsMember({"all", "surfaces"}).description(""))
       ->type_name("all|surfaces");
   subcommand
       .add_option("--light-from", arguments.light_from,
-                  "a fixed light: azimuth and elevation in degrees, as for --camera")
+                  "direction of a fixed light: azimuth and elevation in degrees, as for --camera")
       ->type_name("A,E");
   subcommand
-      .add_option("--material", arguments.material,
-                  "ambient, diffuse and specular share, and shininess, of what is lit (default 0.2,0.8,0.3,20)")
+      .add_option(
+          "--material", arguments.material,
+          "ambient, diffuse and specular reflection, and shininess, under --light (default 0.2,0.8,0.3,20)")
       ->type_name("A,D,S,N");
 }
 
@@ -168,7 +171,7 @@ std::uint8_t cut_of(const ShadingArguments& arguments, volume::Method method) {
     throw std::invalid_argument(fmt::format("--cut-at-bricks {}: give a multiple of {}, up to {}",
                                             arguments.cut_at_bricks, block, 255 * block));
   if (arguments.cut_at_bricks != 0 && method != volume::Method::pre_integrated)
-    throw std::invalid_argument("--cut-at-bricks is for segments; give --method pre-integrated as well");
+    throw std::invalid_argument("--cut-at-bricks requires --method pre-integrated");
   return std::uint8_t(arguments.cut_at_bricks / block);
 }
 
@@ -177,10 +180,13 @@ void check_combination(const ShadingArguments& arguments, volume::Method method)
   const bool plain = arguments.surfaces.empty() && arguments.light.empty() && arguments.light_from.empty();
   if (arguments.op != "over" && !(plain && method == volume::Method::post_classified))
     throw std::invalid_argument(fmt::format(
-        "--operator {} is for samples alone; leave out --method, --surface and --light", arguments.op));
+        "--operator {} requires post-classified samples without surfaces or light; leave out --method, "
+        "--surface and --light",
+        arguments.op));
   if (method == volume::Method::adaptive && !plain)
     throw std::invalid_argument(
-        "--method adaptive knows neither surfaces nor light; give --method pre-integrated, or leave them out");
+        "--method adaptive supports neither surfaces nor light; give --method pre-integrated, or leave them "
+        "out");
 }
 
 }  // namespace
@@ -194,17 +200,18 @@ Shading shading_of(const ShadingArguments& arguments, const volume::Vec3& extent
   check_combination(arguments, shading.method);
   shading.shows_volume = !arguments.no_volume;
   if (arguments.surfaces.size() > volume::max_surfaces)
-    throw std::invalid_argument(fmt::format("{} surfaces are more than can be drawn; give at most {}",
+    throw std::invalid_argument(fmt::format("{} surfaces are too many; give at most {}",
                                             arguments.surfaces.size(), volume::max_surfaces));
   for (const std::string& text : arguments.surfaces) shading.surfaces.push_back(surface_in(text));
   if (!shading.shows_volume && shading.surfaces.empty())
-    throw std::invalid_argument("--no-volume leaves nothing to be seen; give a --surface as well");
+    throw std::invalid_argument("--no-volume shows nothing without a surface; give a --surface as well");
   if (arguments.light == "surfaces" && shading.surfaces.empty())
-    throw std::invalid_argument("--light surfaces finds none; give a --surface as well, or --light all");
+    throw std::invalid_argument(
+        "--light surfaces has no effect without a surface; give a --surface as well, or --light all");
   if (!arguments.light.empty() || !arguments.light_from.empty())
     shading.light = light_of(arguments, extent);
   else if (!arguments.material.empty())
-    throw std::invalid_argument("--material shows under a light only; give --light all as well");
+    throw std::invalid_argument("--material has no effect without a light; give --light all as well");
   return shading;
 }
 
@@ -214,8 +221,8 @@ std::vector<double> surface_values(const Shading& shading, double low, double hi
     values.push_back(surface.of_range ? low + surface.at * (high - low) : surface.at);
     if (!(values.back() > low && values.back() <= high))
       throw std::invalid_argument(
-          fmt::format("a surface at {:g} shows nothing: the volume's values run from {:g} to {:g}; give one "
-                      "above the first, or a place in the range as in 40%",
+          fmt::format("a surface at {:g} shows nothing: the volume's values range from {:g} to {:g}; give a "
+                      "value in this range, above its lower end, or a percentage of it, as in 40%",
                       values.back(), low, high));
   }
   return values;

@@ -101,14 +101,16 @@ void serve_clients(const std::string& socket) {
     FileDescriptor client = compositor::accept_from(listener);
     if (!client) continue;
     if (clients.size() >= compositor::limits::max_clients) {
-      logging::log(logging::Level::warn, "gl-server: {} applications are here already; sent one more away",
+      logging::log(logging::Level::warn,
+                   "gl-server: {} applications are connected already; another one was rejected",
                    clients.size());
       continue;
     }
     try {
       clients.emplace_back(installation, socket, std::move(client), environment);
     } catch (const std::exception& error) {
-      logging::log(logging::Level::warn, "gl-server: no process for one more application: {}", error.what());
+      logging::log(logging::Level::warn, "gl-server: no process could be started for another application: {}",
+                   error.what());
     }
   }
   end_all(clients);

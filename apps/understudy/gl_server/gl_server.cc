@@ -70,7 +70,8 @@ spu::Options options_of_application(const std::string& socket) {
   if (tiles == chain.end() && options.tiles) {
     const int parts = std::min(options.nodes, spu::most_tiles);
     if (parts < 2) {
-      logging::log(logging::Level::warn, "--tiles on: there is one node, which draws all; say -n 2, or more");
+      logging::log(logging::Level::warn,
+                   "--tiles on has no effect with fewer than two nodes; give -n 2 or more");
       return options;
     }
     tiles = chain.insert(chain.end() - 1,
@@ -153,7 +154,7 @@ class Performance {
       } catch (const compositor::ConnectionLost&) {
         return;
       }
-      if (message->type != spu::GlServerMessage::calls) throw MalformedMessage("spoke out of turn");
+      if (message->type != spu::GlServerMessage::calls) throw MalformedMessage("sent an unexpected message");
       play(spu::decode_calls(message->payload, chunks_));
     }
   }
@@ -172,11 +173,11 @@ class Performance {
     }
     const SandboxState state = sandbox_->close(renderer);
     if (!state.obstacle.empty())
-      logging::log(logging::Level::warn, "GL server: calls are made without a sandbox: {}", state.obstacle);
+      logging::log(logging::Level::warn, "GL server: calls are executed without a sandbox: {}", state.obstacle);
     else if (!state.no_landlock.empty() && (renderer == Renderer::graphics_card || sandbox_->writes()))
       logging::log(logging::Level::warn,
-                   "GL server: no file is written, nor opened by a graphics card's driver: {}; --sandbox off "
-                   "does without the sandbox",
+                   "GL server: files cannot be written, and the driver of a graphics card cannot open files: "
+                   "{}; --sandbox off disables the sandbox",
                    state.no_landlock);
   }
 
@@ -259,7 +260,7 @@ class Performance {
 
   void tell(const std::string& fault) {
     if (told_.size() < most_faults_told && told_.insert(fault).second)
-      logging::log(logging::Level::warn, "GL server: {}; the call is left out", fault);
+      logging::log(logging::Level::warn, "GL server: {}; the call is skipped", fault);
   }
 
   Connection& connection_;
@@ -283,7 +284,7 @@ int perform(FileDescriptor socket, const std::string& address) {
     Connection pending(std::move(socket), spu::gl_server_protocols, limits::max_hello_bytes);
     const Message hello = pending.receive(Clock::now() + limits::hello_patience);
     if (hello.type != compositor::LauncherMessage::hello_client)
-      throw MalformedMessage("its first message is no hello");
+      throw MalformedMessage("the first message is not a hello");
     Connection connection(std::move(same), spu::gl_server_protocols, limits::max_gl_server_message_bytes);
     try {
       const bool paints = !hello.payload.empty();
@@ -343,7 +344,8 @@ void add_gl_server_command(CLI::App& app, std::function<int()>& chosen) {
     int connector = -1;  ///< descriptor of the channel to the one that listens
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* subcommand = app.add_subcommand("gl-server", "makes the calls of viewers, for run --remote");
+  CLI::App* subcommand =
+      app.add_subcommand("gl-server", "executes the OpenGL calls of viewers, for run --remote");
   subcommand->group("");
   subcommand->add_option("--socket", arguments->socket)->required();
   subcommand->add_option("--connector", arguments->connector)

@@ -32,7 +32,7 @@ class SharedRecord {
   SharedRecord() {
     void* const memory =
         ::mmap(nullptr, sizeof(PlayedRecord), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED) fail("memory for the player");
+    if (memory == MAP_FAILED) fail("cannot allocate memory for the player");
     record_ = new (memory) PlayedRecord;
   }
   ~SharedRecord() { ::munmap(record_, sizeof(PlayedRecord)); }
@@ -60,7 +60,7 @@ bool is_fault(int signal) {
 int ending_of(pid_t child) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) fail("waiting for the player");
+    if (errno != EINTR) fail("cannot wait for the player");
   }
   return status;
 }
@@ -72,7 +72,7 @@ int play_guarded(const std::filesystem::path& trace, const std::function<int(Pla
   std::fflush(nullptr);
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
-  if (child < 0) fail("a process for the player");
+  if (child < 0) fail("cannot start a process for the player");
   if (child == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (::getppid() != parent) ::_exit(128 + SIGTERM);
@@ -82,11 +82,10 @@ int play_guarded(const std::filesystem::path& trace, const std::function<int(Pla
   if (WIFEXITED(status)) return WEXITSTATUS(status);
   const int signal = WTERMSIG(status);
   if (!is_fault(signal)) return 128 + signal;
-  fmt::print(
-      stderr,
-      "understudy: {}: the driver was ended by signal {} ({}) at {}, record {}; the frames before it are "
-      "played with --frames\n",
-      trace.string(), signal, ::strsignal(signal), name_of((*record).id), (*record).number.load());
+  fmt::print(stderr,
+             "understudy: {}: the OpenGL driver crashed with signal {} ({}) at {}, record {}; give --frames to "
+             "replay only the frames before it\n",
+             trace.string(), signal, ::strsignal(signal), name_of((*record).id), (*record).number.load());
   return player_crashed;
 }
 

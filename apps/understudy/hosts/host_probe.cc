@@ -75,9 +75,10 @@ std::vector<SilentHost> HostProbe::silent() {
       silent.push_back({question.host, fmt::format("does not answer within {} s", patience_with_host.count())});
     else if (status == not_executable || status == not_found)
       silent.push_back(
-          {question.host, fmt::format("cannot run {}{}: programs and libraries must be there under "
-                                      "the same path as here",
-                                      node_.string(), why)});
+          {question.host,
+           fmt::format(
+               "cannot run {}{}: programs and libraries must be installed there under the same path as here",
+               node_.string(), why)});
     else
       silent.push_back(
           {question.host,

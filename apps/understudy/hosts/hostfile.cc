@@ -28,7 +28,7 @@
 namespace understudy::launcher {
 namespace {
 
-constexpr const char* expected = "expected a host a line, as in 'node1 slots=2', comments behind '#'";
+constexpr const char* expected = "expected one host per line, as in 'node1 slots=2', comments after '#'";
 constexpr std::size_t longest_line = 1024;
 constexpr std::size_t most_hosts = spu::max_nodes;
 
@@ -54,17 +54,17 @@ Host host_of(std::istringstream& words, const std::string& where) {
   Host host;
   words >> host.name;
   if (!is_host_name(host.name))
-    throw std::runtime_error(fmt::format("{}: this is no name or address of a host; {}", where, expected));
+    throw std::runtime_error(fmt::format("{}: not the name or address of a host; {}", where, expected));
   for (std::string word; words >> word;) {
     const std::size_t equals = word.find('=');
     const std::string key = word.substr(0, equals);
     const bool slots = key == "slots";
     if (equals == std::string::npos || (!slots && key != "max_slots" && key != "max-slots"))
       throw std::runtime_error(
-          fmt::format("{}: behind '{}' only slots= and max_slots= may stand; {}", where, host.name, expected));
+          fmt::format("{}: after '{}' only slots= and max_slots= are allowed; {}", where, host.name, expected));
     const int number = number_of_slots(std::string_view(word).substr(equals + 1));
     if (number == 0)
-      throw std::runtime_error(fmt::format("{}: the {} of '{}' are no number from 1 to {}; {}", where, key,
+      throw std::runtime_error(fmt::format("{}: the {} of '{}' must be a number from 1 to {}; {}", where, key,
                                            host.name, spu::max_nodes, expected));
     if (slots) host.slots = number;
   }
@@ -106,7 +106,8 @@ std::vector<Host> parse_hostfile(std::istream& text, const std::string& name) {
   for (std::string line; std::getline(text, line);) {
     const std::string where = fmt::format("hostfile '{}', line {}", name, ++number);
     if (line.size() > longest_line)
-      throw std::runtime_error(fmt::format("{}: {} characters are too many; {}", where, line.size(), expected));
+      throw std::runtime_error(
+          fmt::format("{}: the line is too long, with {} characters; {}", where, line.size(), expected));
     std::istringstream words(line.substr(0, line.find('#')));
     if ((words >> std::ws).eof()) continue;
     const Host host = host_of(words, where);
@@ -117,9 +118,9 @@ std::vector<Host> parse_hostfile(std::istream& text, const std::string& name) {
       hosts.push_back(host);
     if (hosts.size() > most_hosts)
       throw std::runtime_error(
-          fmt::format("{}: a group has {} hosts at most; shorten the file", where, most_hosts));
+          fmt::format("{}: a group can have at most {} hosts; shorten the file", where, most_hosts));
   }
-  if (hosts.empty()) throw std::runtime_error(fmt::format("hostfile '{}' names no host; {}", name, expected));
+  if (hosts.empty()) throw std::runtime_error(fmt::format("hostfile '{}' lists no host; {}", name, expected));
   return hosts;
 }
 

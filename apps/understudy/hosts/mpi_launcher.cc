@@ -83,11 +83,11 @@ std::variant<MpiLauncher, std::string> find_mpi_launcher(MpiFamily family) {
     const auto version = mpi_version(said_by(*program));
     if (version && version->family == family) return MpiLauncher{*program, *version};
     if (instead.empty())
-      instead = fmt::format("{} is {}", program->string(), version ? version->text : "of another MPI");
+      instead = fmt::format("{} is {}", program->string(), version ? version->text : "of a different MPI");
   }
   if (instead.empty()) instead = "mpirun is not on PATH";
-  return fmt::format("no {} here, which the nodes were built with ({}; apt install {})", wanted.name, instead,
-                     wanted.package);
+  return fmt::format("the nodes were built with {}, which is not installed ({}; apt install {})", wanted.name,
+                     instead, wanted.package);
 }
 
 }  // namespace understudy::launcher

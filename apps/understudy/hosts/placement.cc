@@ -52,14 +52,15 @@ Placement placement_of(const PlacementWish& wish, const Environment& environment
   const auto here = std::ranges::find_if(placement.hosts, [&](const Host& host) { return is_here(host.name); });
   if (here == placement.hosts.end())
     throw std::runtime_error(
-        fmt::format("hostfile '{}' lists {}, and not this machine, whose rank 0 shares memory with the viewer: "
-                    "add a line such as 'localhost slots=1', or start understudy on one of those hosts",
+        fmt::format("hostfile '{}' lists {}, but not this machine, where rank 0 must share memory with the "
+                    "viewer; add a line such as 'localhost slots=1', or start understudy on one of those hosts",
                     wish.hostfile.string(), names_of(placement.hosts)));
   std::rotate(placement.hosts.begin(), here, here + 1);
   const int slots = slots_of(placement.hosts);
   if (!wish.ranks && slots > spu::max_nodes)
-    throw std::runtime_error(fmt::format("hostfile '{}' has {} slots, and a group {} ranks at most: give -n N",
-                                         wish.hostfile.string(), slots, spu::max_nodes));
+    throw std::runtime_error(
+        fmt::format("hostfile '{}' has {} slots, but a group can have at most {} ranks; give -n N",
+                    wish.hostfile.string(), slots, spu::max_nodes));
   placement.ranks = wish.ranks.value_or(slots);
   if (placement.hosts.size() > 1) placement.launch = slurm ? Launch::slurm : Launch::remote_shell;
   return placement;

@@ -26,8 +26,8 @@ void check_size(const std::filesystem::path& path, std::int64_t width, std::int6
       width * height <= max_image_pixels) {
     return;
   }
-  fail(path, fmt::format("{} x {} pixels; this program reads 1 to {} a side, {} in all", width, height,
-                         max_image_side, max_image_pixels));
+  fail(path, fmt::format("{} x {} pixels; each side must be 1 to {} pixels, and the image at most {} pixels",
+                         width, height, max_image_side, max_image_pixels));
 }
 
 RgbaImage empty_image(const std::filesystem::path& path, std::int64_t width, std::int64_t height) {
@@ -78,7 +78,7 @@ FloatMap read_float_map(const std::filesystem::path& path) {
   double scale = 0;
   file >> kind >> width >> height >> scale;
   if (!file || (kind != "PF" && kind != "Pf") || scale == 0 || file.get() != '\n')
-    fail(path, "not a PFM image");
+    fail(path, "not a valid PFM image");
   FloatMap map;
   map.channels = kind == "PF" ? 3 : 1;
   check_size(path, width, height);
@@ -88,7 +88,7 @@ FloatMap read_float_map(const std::filesystem::path& path) {
   const auto bytes = static_cast<std::streamsize>(count * static_cast<std::int64_t>(sizeof(float)));
   const std::streamoff start = file.tellg();
   const std::streamoff held = file.seekg(0, std::ios::end).tellg() - std::streampos(start);
-  if (held < bytes) fail(path, fmt::format("ends after {} of {} bytes of pixels", held, bytes));
+  if (held < bytes) fail(path, fmt::format("the file ends after {} of {} bytes of pixels", held, bytes));
   file.seekg(start);
   map.values.resize(static_cast<std::size_t>(count));
   file.read(reinterpret_cast<char*>(map.values.data()), bytes);
@@ -119,7 +119,7 @@ RgbaImage read_pfm(const std::filesystem::path& path) {
   if (!std::filesystem::exists(beside)) return image;
   const FloatMap alpha = read_float_map(beside);
   if (alpha.width != colour.width || alpha.height != colour.height)
-    fail(beside, "has another size than its colours");
+    fail(beside, "the alpha image differs in size from the colour image");
   image.has_alpha = true;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) image.pixel(x, y)[3] = value_of(alpha, x, y, 0);
@@ -143,7 +143,7 @@ void write_float_map(const std::filesystem::path& path, const RgbaImage& image, 
   file.write(reinterpret_cast<const char*>(values.data()),
              static_cast<std::streamsize>(values.size() * sizeof(float)));
   file.close();
-  if (!file) fail(path, "cannot be written; check that the folder exists and has room");
+  if (!file) fail(path, "cannot be written; check that the folder exists and the disk is not full");
 }
 
 }  // namespace

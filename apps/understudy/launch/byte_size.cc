@@ -18,9 +18,10 @@ std::string to_byte_size(std::string& text) {
   constexpr std::string_view units = "KMGT";
   const std::size_t power = unit.empty() ? 0 : units.find(unit[0]) + 1;
   if (error != std::errc() || unit.size() > 1 || (!unit.empty() && power == 0))
-    return fmt::format("'{}' is no size: give bytes, or a whole number and K, M, G or T, or auto", text);
+    return fmt::format("'{}' is not a size; give a number of bytes, a whole number with K, M, G or T, or auto",
+                       text);
   if (number > std::numeric_limits<std::uint64_t>::max() >> (10 * power))
-    return fmt::format("{} is more than there can be", text);
+    return fmt::format("{} is too large", text);
   text = fmt::format("{}", number << (10 * power));
   return {};
 }

@@ -76,7 +76,8 @@ std::string connection_text(const Json& figures) {
     return figures.at(way).at(what).get<double>() / 1e6;
   };
   return fmt::format(
-      "connection to {}: {:.3f} MB up (of {:.3f}), {:.3f} MB down (of {:.3f}), round trip {:.2f} ms",
+      "connection to {}: {:.3f} MB sent (for {:.3f} MB of messages), {:.3f} MB received (for {:.3f} MB), round "
+      "trip {:.2f} ms",
       figures.at(key::address).get<std::string>(), megabytes(key::up, key::bytes),
       megabytes(key::up, key::payload_bytes), megabytes(key::down, key::bytes),
       megabytes(key::down, key::payload_bytes), figures.at(key::round_trip_ms).get<double>());

@@ -99,7 +99,7 @@ int listen(const ListenerPlan& plan) {
       open_listener->forget();
       return carry(std::move(client), connection_request, plan);
     });
-    if (!started) say("no process can be made for a client; it was sent away");
+    if (!started) say("no process could be started for a client; the client was rejected");
   };
   Listener listener(plan.address, credentials, admission, accept, say);
   open_listener = &listener;
@@ -135,9 +135,10 @@ OpenListener start_listener(const Installation& installation, const ListenerPlan
   while (!std::filesystem::exists(address_file(plan.folder))) {
     if (const auto ending = listener.process->wait_for_ending(5))
       throw std::runtime_error(
-          fmt::format("nobody listens at {}: the listener {}", plan.address.text(), ending->text()));
+          fmt::format("cannot listen at {}: the listener {}", plan.address.text(), ending->text()));
     if (Clock::now() > until)
-      throw std::runtime_error(fmt::format("nobody listens at {} in time", plan.address.text()));
+      throw std::runtime_error(
+          fmt::format("cannot listen at {}: the listener did not start in time", plan.address.text()));
   }
   std::string text;
   std::ifstream(address_file(plan.folder)) >> text;
@@ -149,7 +150,7 @@ void add_listener(CLI::App& app, std::function<int()>& chosen) {
   const auto plan = std::make_shared<ListenerPlan>();
   const auto address = std::make_shared<std::string>();
   CLI::App* subcommand =
-      app.add_subcommand("listener", "lets clients of other machines in, for serve --listen");
+      app.add_subcommand("listener", "accepts clients from other machines, for serve --listen");
   subcommand->group("");
   subcommand->add_option("--listen", *address)->required();
   subcommand->add_option("--secret-file", plan->secret_file);

@@ -60,8 +60,8 @@ std::string last_words(const std::filesystem::path& log, std::uintmax_t from) {
     if (line.starts_with("  Remote daemon: ")) verdict = "the connection to " + last_word(line) + " was lost";
     if (line.starts_with("ORTE was unable to reliably start one or more daemons"))
       verdict =
-          "mpirun could not start Open MPI's daemon on every host: Open MPI must be there under the same path "
-          "as here";
+          "mpirun could not start Open MPI's daemon on every host: Open MPI must be installed there under the "
+          "same path as here";
   }
   while (verdict.ends_with('.') || verdict.ends_with(' ')) verdict.pop_back();
   return verdict;
@@ -95,8 +95,8 @@ std::string why_not_started(Launch launch) {
   if (launch == Launch::this_machine)
     return fmt::format("they did not start within {} s", patience_with_start.count());
   return fmt::format(
-      "they did not find each other within {} s: the hosts' names, and the ports between them, must be open to "
-      "each other",
+      "they did not connect to each other within {} s: every host must resolve the other hosts' names and "
+      "reach their ports",
       patience_with_start.count());
 }
 
@@ -188,7 +188,7 @@ void NodeGroup::try_to(const std::function<void()>& start) {
     start();
   } catch (const std::exception& error) {
     broker_.turn_away(error.what());
-    say(fmt::format("{}; the viewer goes on by itself", error.what()));
+    say(fmt::format("{}; the viewer continues by itself", error.what()));
   }
 }
 
@@ -210,7 +210,7 @@ void NodeGroup::start_on_hosts_that_answer() {
   }
   const Placement placement = without_hosts(plan_.placement, gone);
   if (!silent.empty())
-    say(fmt::format("{}: going on with {} {} on {}", what, placement.ranks,
+    say(fmt::format("{}: continuing with {} {} on {}", what, placement.ranks,
                     placement.ranks == 1 ? "node" : "nodes", names_of(placement.hosts)));
   try_to([&] { start_on(placement); });
 }
@@ -260,7 +260,7 @@ void NodeGroup::look_after_children() {
   const auto pause = restarts_.after(Clock::now() - started_at_);
   if (!pause) {
     broker_.turn_away(what);
-    say(fmt::format("{}; no more attempts after {} restarts, the viewer goes on by itself", what,
+    say(fmt::format("{}; giving up after {} restarts, the viewer continues by itself", what,
                     restarts_.count()));
     return;
   }
@@ -268,7 +268,7 @@ void NodeGroup::look_after_children() {
   const std::string where = plan_.placement.launch == Launch::remote_shell
                                 ? "again on the hosts that answer"
                                 : fmt::format("{} again", plan_.placement.ranks);
-  say(fmt::format("{}; starting {} ({} of {}), the viewer draws by itself meanwhile", what, where,
+  say(fmt::format("{}; starting {} (attempt {} of {}), meanwhile the viewer draws by itself", what, where,
                   restarts_.count(), max_restarts));
 }
 

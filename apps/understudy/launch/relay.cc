@@ -44,14 +44,14 @@ compositor::Credentials credentials_of(const ConnectionPlan& plan) {
   if (plan.key_file.empty()) return compositor::Credentials(compositor::read_secret(plan.secret_file));
   const std::vector<compositor::PublicKey> server = compositor::read_public_keys(plan.server_key);
   if (server.size() != 1)
-    throw std::runtime_error(fmt::format("'{}' holds {} public keys; --server-key wants that of one server",
+    throw std::runtime_error(fmt::format("'{}' holds {} public keys; --server-key takes the key of one server",
                                          plan.server_key.string(), server.size()));
   return {compositor::read_key_file(plan.key_file), server};
 }
 
 compositor::AuthenticatedSocket linked(const ConnectionPlan& plan) {
   const auto address = compositor::tcp_address_of(plan.address);
-  if (!address) throw std::runtime_error(fmt::format("'{}' is no host:port", plan.address));
+  if (!address) throw std::runtime_error(fmt::format("'{}' is not a HOST:PORT", plan.address));
   return compositor::connect_tcp(*address, credentials_of(plan), plan.connection_request,
                                  Clock::now() + limits::hello_patience);
 }
@@ -106,8 +106,8 @@ int carry(FileDescriptor application, const ConnectionPlan& plan, const std::fil
 
 std::string lack_of_credentials(const std::string& address) {
   return fmt::format(
-      "--connect {0} needs --secret-file FILE: the one that understudy serve --listen {0} uses, copied to this "
-      "machine; or --key and --server-key",
+      "--connect {0} needs --secret-file FILE, the secret file of understudy serve --listen {0}, copied to "
+      "this machine; or --key and --server-key",
       address);
 }
 
@@ -173,32 +173,32 @@ void with_connection(ConnectionPlan plan, const std::string& address, const std:
 void add_connection_options(CLI::App& subcommand, ConnectionPlan& plan) {
   CLI::Option* secret =
       subcommand
-          .add_option("--secret-file", plan.secret_file,
-                      "for --connect HOST:PORT: the secret of `understudy serve` there, copied to this machine")
+          .add_option(
+              "--secret-file", plan.secret_file,
+              "with --connect HOST:PORT: secret file of the `understudy serve` there, copied to this machine")
           ->type_name("FILE");
   CLI::Option* key =
       subcommand
           .add_option("--key", plan.key_file,
-                      "in place of --secret-file: your own key (understudy key FILE), which `understudy serve "
-                      "--clients` there must know")
+                      "with --connect HOST:PORT, instead of --secret-file: key of this client (understudy key "
+                      "FILE), whose public key must be in the file of `understudy serve --clients` there")
           ->type_name("FILE")
           ->excludes(secret);
   CLI::Option* server_key =
       subcommand
-          .add_option("--server-key", plan.server_key, "with --key: the public key (FILE.pub) of the server")
+          .add_option("--server-key", plan.server_key, "with --key: file of the server's public key (FILE.pub)")
           ->type_name("FILE.pub")
           ->needs(key);
   key->needs(server_key);
   subcommand
       .add_option("--quality", plan.connection_request.jpeg_quality,
                   "with --connect HOST:PORT: JPEG quality of images while the view moves; images of a view at "
-                  "rest are lossless. Default: all images are lossless")
+                  "rest are lossless; default: all images are lossless")
       ->type_name("1..100")
       ->check(CLI::Range(1, 100));
-  subcommand.add_flag(
-      "--plain", plan.connection_request.plain,
-      "with --connect to this machine (through ssh, say): encrypt nothing; understudy serve must "
-      "have --plain, too");
+  subcommand.add_flag("--plain", plan.connection_request.plain,
+                      "with --connect to this machine (for example through ssh): do not encrypt the "
+                      "connection; `understudy serve` needs --plain as well");
 }
 
 void add_relay(CLI::App& app, std::function<int()>& chosen) {
@@ -209,7 +209,7 @@ void add_relay(CLI::App& app, std::function<int()>& chosen) {
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* subcommand =
-      app.add_subcommand("relay", "carries messages to another machine, for --connect HOST:PORT");
+      app.add_subcommand("relay", "relays messages to another machine, for --connect HOST:PORT");
   subcommand->group("");
   subcommand->add_option("--connect", arguments->plan.address)->required();
   subcommand->add_option("--secret-file", arguments->plan.secret_file);

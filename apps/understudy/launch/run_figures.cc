@@ -21,8 +21,8 @@ bool RunFigures::saw_frames() const {
 std::string RunFigures::summary() const {
   if (without_ == 0) return spu::summary_line(processes_);
   const std::string missing = fmt::format(
-      "understudy: the figures of {} {} could not be written to {}, so what was substituted is not "
-      "known; make room there",
+      "understudy: the figures of {} {} could not be written to {}, so it is not known what was substituted; "
+      "free disk space there",
       without_, without_ == 1 ? "process" : "processes", folder_);
   return processes_.empty() ? missing : spu::summary_line(processes_) + "\n" + missing;
 }

@@ -52,7 +52,7 @@ RunFolder::RunFolder() {
   std::string name = parent / (std::string(prefix) + "XXXXXX");
   if (mkdtemp(name.data()) == nullptr) {
     throw std::system_error(errno, std::generic_category(),
-                            "cannot make a folder for this run in " + parent.string());
+                            "cannot create a folder for this run in " + parent.string());
   }
   path_ = name;
   lock();
@@ -64,9 +64,9 @@ RunFolder::RunFolder(std::filesystem::path made_for_it) : path_(std::move(made_f
   // What is in it is removed at the end: nothing of it may be anybody else's.
   if (lstat(path_.c_str(), &about) != 0 || !S_ISDIR(about.st_mode) || about.st_uid != geteuid() ||
       (about.st_mode & 07777) != 0700 || !std::filesystem::is_empty(path_))
-    throw std::runtime_error("--folder " + path_.string() +
-                             ": it is removed at the end, so it must be an empty folder of yours that nobody "
-                             "else may enter (mode 0700)");
+    throw std::runtime_error(
+        "--folder " + path_.string() +
+        ": the folder is removed at the end, so it must be empty, yours, and have mode 0700");
   lock();
 }
 

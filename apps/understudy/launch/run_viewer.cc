@@ -149,8 +149,8 @@ void tell_whether_connection_is_there(const ConnectionPlan& connection) {
   try {
     try_connection(connection);
   } catch (const std::runtime_error& error) {
-    say(fmt::format("no render nodes at '{}': {}; the viewer draws by itself until then", connection.address,
-                    error.what()));
+    say(fmt::format("no render nodes at '{}': {}; the viewer draws by itself until they are available",
+                    connection.address, error.what()));
   }
 }
 
@@ -182,10 +182,10 @@ std::unique_ptr<NodeGroup> start_nodes(const Installation& installation, std::op
 void tell_whether_nodes_can_answer(const std::string& socket) {
   std::error_code unreadable;
   if (std::filesystem::is_socket(socket, unreadable)) return;
-  say(fmt::format(
-      "no render nodes at '{}'; start them with: understudy serve -n N --socket {}; the viewer draws by "
-      "itself until then",
-      socket, socket));
+  say(
+      fmt::format("no render nodes at '{}'; start them with: understudy serve -n N --socket {}; until then, "
+                  "the viewer draws by itself",
+                  socket, socket));
 }
 
 Ending wait_for(ChildProcess& viewer, NodeGroup* nodes, SignalInbox& inbox) {
@@ -240,9 +240,8 @@ void tell_what_happened(const spu::Options& options, bool quiet, const RunFolder
 /// Where a viewer ended early and could have had no window: what is missing.
 void tell_of_a_missing_display(const Ending& ending, const RunFigures& figures) {
   if (ending.exit_status() == 0 || std::getenv("DISPLAY") != nullptr || figures.saw_frames()) return;
-  say("DISPLAY is not set: a viewer with windows needs an X server, as Xvfb :99 -screen 0 1280x1024x24 "
-      "+extension GLX "
-      "-noreset & export DISPLAY=:99");
+  say("DISPLAY is not set: a viewer with windows needs an X server, for example: Xvfb :99 -screen 0 "
+      "1280x1024x24 +extension GLX -noreset & export DISPLAY=:99");
 }
 
 /// The run cannot begin; the text says why and what to do.
@@ -268,13 +267,13 @@ struct RunPlan {
 /// Throws CannotRun for options that exclude each other.
 void check_combination(const RunArguments& arguments, const spu::Options& options) {
   if (!arguments.remote && arguments.injection && stands_in_viewer(options.chain))
-    throw CannotRun("a chain that ends in remote is for viewers whose calls are made elsewhere; add --remote");
+    throw CannotRun("a chain that ends in remote needs a GL server, which executes the calls; add --remote");
   if (arguments.remote && options.disable)
     throw CannotRun(
-        "--remote and UNDERSTUDY_DISABLE exclude each other: without Understudy the viewer's calls go nowhere; "
-        "unset one of them");
+        "--remote and UNDERSTUDY_DISABLE exclude each other: without Understudy nothing executes the viewer's "
+        "OpenGL calls; use only one of them");
   if (options.tiles && !arguments.remote)
-    throw CannotRun("--tiles on is for viewers whose windows are drawn elsewhere; add --remote");
+    throw CannotRun("--tiles on needs a GL server, which draws the viewer's windows; add --remote");
 }
 
 /// Throws CannotRun.
@@ -288,8 +287,8 @@ std::optional<ConnectionPlan> checked_connection(const RunArguments& arguments, 
     throw CannotRun(error.what(), connection ? 1 : usage_error);
   }
   if (!connection && arguments.connection.has_credentials())
-    say("--secret-file and --key are for --connect HOST:PORT; nodes and GL servers of this machine need "
-        "neither");
+    say("--secret-file and --key have no effect without --connect HOST:PORT; nodes and GL servers of this "
+        "machine need neither");
   return connection;
 }
 
@@ -349,29 +348,32 @@ std::optional<NodeGroupPlan> nodes_of(const RunArguments& arguments, const RunPl
 void tell_options_without_effect(const RunArguments& arguments, const RunPlan& plan, bool has_nodes) {
   if (!has_nodes && arguments.backend != "cpu")
     say(fmt::format(
-        "--backend {} is for nodes of this run (-n N), or give it to understudy serve; here rays are cast by "
-        "the CPU, as the viewer's own process has OpenGL to itself",
+        "--backend {} has no effect without nodes of this run; add -n N, or give it to understudy serve. "
+        "Inside the viewer's process, where OpenGL is the viewer's own, the CPU casts the rays",
         arguments.backend));
   if (!has_nodes && arguments.sort != "auto")
-    say(fmt::format("--sort {} is for nodes of this run (-n N), or give it to understudy serve",
-                    arguments.sort));
+    say(fmt::format(
+        "--sort {} has no effect without nodes of this run; add -n N, or give it to understudy serve",
+        arguments.sort));
   if (!has_nodes && arguments.partition != "auto")
-    say(fmt::format("--partition {} is for nodes of this run (-n N), or give it to understudy serve",
-                    arguments.partition));
+    say(fmt::format(
+        "--partition {} has no effect without nodes of this run; add -n N, or give it to understudy serve",
+        arguments.partition));
   if (!has_nodes && arguments.balance != "off")
-    say(fmt::format("--balance {} is for nodes of this run (-n N), or give it to understudy serve",
-                    arguments.balance));
+    say(fmt::format(
+        "--balance {} has no effect without nodes of this run; add -n N, or give it to understudy serve",
+        arguments.balance));
   if (!has_nodes && !arguments.hostfile.empty())
-    say(fmt::format("--hostfile {} is for nodes of this run, or give it to understudy serve",
+    say(fmt::format("--hostfile {} has no effect without nodes of this run; give it to understudy serve",
                     arguments.hostfile.string()));
   const bool plays_here = arguments.remote ? !plan.connection : !arguments.injection;
   if (!plays_here && arguments.settings.contains("UNDERSTUDY_SERVER_OPENGL"))
-    say(fmt::format(
-        "--server-opengl {} is for a GL server of this run (--remote); for one elsewhere give it to "
-        "understudy serve --gl-server",
-        plan.options.server_opengl));
+    say(
+        fmt::format("--server-opengl {} has no effect without a GL server of this run (--remote); for a GL "
+                    "server elsewhere, give it to understudy serve --gl-server",
+                    plan.options.server_opengl));
   if (plan.connection && plan.options.tiles)
-    say("--tiles is for a GL server of this run; for one elsewhere give it to understudy serve --gl-server");
+    say("--tiles has no effect on a GL server elsewhere; give it to understudy serve --gl-server");
 }
 
 /// The relay to another machine, if there is one; the viewer connects to its socket then.
@@ -406,7 +408,7 @@ std::unique_ptr<ChildProcess> start_server(const RunArguments& arguments, const 
                             viewer_environment(without_injection, plan.options, installation, folder, nodes),
                             folder, plan.viewer_chain);
   } catch (const std::exception& error) {
-    throw CannotRun(fmt::format("{}; the viewer has no OpenGL without it, so it is not started", error.what()),
+    throw CannotRun(fmt::format("{}; the viewer is not started, because it would have no OpenGL", error.what()),
                     1);
   }
 }

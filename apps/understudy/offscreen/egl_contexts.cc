@@ -134,9 +134,8 @@ void EglContexts::make_current(std::uint64_t number, std::uint64_t drawable, spu
   if (place.surface != old) clear(context.config, place.surface);
   if (place.surface == EGL_NO_SURFACE ||
       !egl_->MakeCurrent(egl_->display, place.surface, place.surface, context.context)) {
-    throw std::runtime_error(
-        fmt::format("no drawable of {} x {} pixels could be made current (EGL error {:#x})", extent.width,
-                    extent.height, egl_->GetError()));
+    throw std::runtime_error(fmt::format("EGL cannot make a drawable of {} x {} pixels current (error {:#x})",
+                                         extent.width, extent.height, egl_->GetError()));
   }
   if (old != EGL_NO_SURFACE && old != place.surface) egl_->DestroySurface(egl_->display, old);
 }

@@ -30,13 +30,13 @@ void* OffscreenContexts::context_for(const spu::RecordedContext& wanted) const {
     if (version >= wanted.version && wanted.version != 0) continue;
     void* made = make_context(wanted, version);
     if (made == nullptr) continue;
-    logging::log(logging::Level::warn, "the trace wants OpenGL {}.{}, the driver here has {}.{}",
+    logging::log(logging::Level::warn, "the trace needs OpenGL {}.{}, but the OpenGL driver provides {}.{}",
                  wanted.version / 100, wanted.version / 10 % 10, version / 100, version / 10 % 10);
     return made;
   }
-  throw std::runtime_error(
-      fmt::format("the driver here gives no OpenGL {}.{} {} context; another one may: see `understudy doctor`",
-                  wanted.version / 100, wanted.version / 10 % 10, is_core(wanted) ? "core" : "compatibility"));
+  throw std::runtime_error(fmt::format(
+      "the OpenGL driver provides no OpenGL {}.{} {} context; another driver may: see `understudy doctor`",
+      wanted.version / 100, wanted.version / 10 % 10, is_core(wanted) ? "core" : "compatibility"));
 }
 
 int OffscreenContexts::highest_version(bool core) const {
@@ -59,7 +59,7 @@ std::unique_ptr<OffscreenContexts> open_offscreen_contexts(std::string_view libr
     auto contexts = std::make_unique<EglContexts>();
     if (library == "egl" || contexts->highest_version(false) + contexts->highest_version(true) > 0)
       return contexts;
-    obstacle = "EGL's driver gives no OpenGL context; install libgl1-mesa-dri";
+    obstacle = "EGL's driver provides no OpenGL context; install libgl1-mesa-dri";
   } catch (const std::runtime_error& error) {
     if (library == "egl") throw;
     obstacle = error.what();
@@ -69,9 +69,9 @@ std::unique_ptr<OffscreenContexts> open_offscreen_contexts(std::string_view libr
   try {
     contexts = std::make_unique<OsmesaContexts>();
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("{}; nor is there OSMesa: {}", obstacle, error.what()));
+    throw std::runtime_error(fmt::format("{}; OSMesa is not available either: {}", obstacle, error.what()));
   }
-  logging::log(logging::Level::info, "drawing on OSMesa, as {}", obstacle);
+  logging::log(logging::Level::info, "drawing on OSMesa, because {}", obstacle);
   return contexts;
 }
 

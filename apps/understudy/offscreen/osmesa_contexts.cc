@@ -66,8 +66,9 @@ void OsmesaContexts::bind(Context& context, Drawable& drawable) {
   const auto [width, height] = drawable.extent;
   if (!osmesa_->MakeCurrent(static_cast<OSMesaContext>(context.context), drawable.memory.data(),
                             GL_UNSIGNED_BYTE, width, height)) {
-    throw std::runtime_error(fmt::format(
-        "OSMesa makes no drawable of {} x {} pixels current; EGL may: install libegl-mesa0", width, height));
+    throw std::runtime_error(
+        fmt::format("OSMesa cannot make a drawable of {} x {} pixels current; EGL may: install libegl-mesa0",
+                    width, height));
   }
   one_buffer_->made_current(context.double_buffered);
 }

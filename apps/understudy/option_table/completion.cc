@@ -165,7 +165,7 @@ std::string completion_text(std::string_view shell, std::string_view program, Ro
   if (shell == "bash") return bash(program, subcommands);
   if (shell == "zsh") return zsh(program, subcommands);
   if (shell == "fish") return fish(program, subcommands);
-  throw std::invalid_argument(fmt::format("there is no completion for '{}': bash, zsh or fish", shell));
+  throw std::invalid_argument(fmt::format("there is no completion for '{}'; give bash, zsh or fish", shell));
 }
 
 }  // namespace understudy::launcher

@@ -107,7 +107,7 @@ std::optional<WrongValue> wrong_value(const CLI::App& subcommand, const std::str
 
 std::string explanation(const CLI::App& app, WordSpan words, const CLI::ParseError& error) {
   if (words.empty())
-    return fmt::format("what is to be done? Give one of {}", fmt::join(subcommand_names(app), ", "));
+    return fmt::format("the subcommand is missing; give one of {}", fmt::join(subcommand_names(app), ", "));
   const CLI::App* const subcommand = subcommand_of(app, words.front());
   if (subcommand == nullptr) {
     const std::vector<std::string> known =
@@ -131,7 +131,7 @@ std::string explanation(const CLI::App& app, WordSpan words, const CLI::ParseErr
   }
   if (const auto wrong = wrong_value(*subcommand, error.what(), own))
     return with_nearest(
-        fmt::format("{}: '{}' is none of {}", wrong->option, wrong->value, fmt::join(wrong->known, ", ")),
+        fmt::format("{}: '{}' is not one of {}", wrong->option, wrong->value, fmt::join(wrong->known, ", ")),
         wrong->value, wrong->known);
   const std::string said = error.what();
   return fmt::format("{}{} {}", name, said.starts_with('-') ? "" : ":", said);
@@ -155,7 +155,7 @@ std::string nearest_word(const std::string& word, WordSpan known) {
 
 std::string usage_error_text(const CLI::App& app, WordSpan words, const CLI::ParseError& error) {
   const CLI::App* const subcommand = words.empty() ? nullptr : subcommand_of(app, words.front());
-  return fmt::format("{0}: {1}\n`{0}{2} --help` lists what there is", app.get_name(),
+  return fmt::format("{0}: {1}\nTry `{0}{2} --help` for more information.", app.get_name(),
                      explanation(app, words, error), subcommand != nullptr ? " " + words.front() : "");
 }
 

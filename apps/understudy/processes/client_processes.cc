@@ -81,8 +81,8 @@ void listen_for_clients(const std::string& socket, const std::string& who,
     compositor::FileDescriptor client = compositor::accept_from(listener);
     if (!client) continue;
     if (clients.count() >= compositor::limits::max_clients) {
-      logging::log(logging::Level::warn, "{}: {} applications are here already; sent one more away", who,
-                   clients.count());
+      logging::log(logging::Level::warn, "{}: {} applications are connected already; another one was rejected",
+                   who, clients.count());
       continue;
     }
     clients.start([&] {

@@ -27,7 +27,7 @@ std::string obstacle_to_writing(const std::string& path) {
 std::string obstacle_to_writing_into(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) return fmt::format("{} cannot be made a folder: {}", folder, error.message());
+  if (error) return fmt::format("{} cannot be created as a folder: {}", folder, error.message());
   if (::access(folder.c_str(), W_OK | X_OK) == 0) return "";
   return fmt::format("{} cannot be written to: {}", folder, std::strerror(errno));
 }

@@ -9,10 +9,9 @@ ProgressStyle ProgressOptions::style() const {
 }
 
 void add_progress_options(CLI::App& subcommand, ProgressOptions& options, const std::string& extra) {
-  CLI::Option* progress =
-      subcommand.add_flag("--progress", options.lines,
-                          "say how far it is in lines that stay, as where there is no terminal" + extra);
-  subcommand.add_flag("--quiet", options.quiet, "say nothing but warnings and errors")->excludes(progress);
+  CLI::Option* progress = subcommand.add_flag(
+      "--progress", options.lines, "print progress as separate lines, also where there is no terminal" + extra);
+  subcommand.add_flag("--quiet", options.quiet, "print only warnings and errors")->excludes(progress);
 }
 
 }  // namespace understudy::launcher

@@ -60,7 +60,7 @@ class Ruleset {
  public:
   explicit Ruleset(int version, const RulesetAttributes& attributes)
       : rules_(int(::syscall(SYS_landlock_create_ruleset, &attributes, bytes_known(version), 0))) {
-    if (!rules_) trouble_ = fmt::format("Landlock makes no rules: {}", std::strerror(errno));
+    if (!rules_) trouble_ = fmt::format("Landlock cannot create a ruleset: {}", std::strerror(errno));
   }
 
   /// What is not there needs no rule.
@@ -72,7 +72,7 @@ class Ruleset {
     if (!trouble_.empty()) return trouble_;
     if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
         ::syscall(SYS_landlock_restrict_self, rules_.get(), 0) != 0)
-      return fmt::format("Landlock does not take effect: {}", std::strerror(errno));
+      return fmt::format("Landlock cannot be enforced: {}", std::strerror(errno));
     return {};
   }
 
@@ -85,14 +85,15 @@ class Ruleset {
     rule.allowed_access = S_ISDIR(about.st_mode) ? rights : rights & of_single_files;
     rule.parent_fd = opened.get();
     if (::syscall(SYS_landlock_add_rule, rules_.get(), LANDLOCK_RULE_PATH_BENEATH, &rule, 0) != 0)
-      trouble_ = fmt::format("Landlock takes no rule for {}: {}", file.string(), std::strerror(errno));
+      trouble_ = fmt::format("Landlock rejects the rule for {}: {}", file.string(), std::strerror(errno));
   }
 
   FileDescriptor rules_;
   std::string trouble_;
 };
 
-constexpr const char* no_landlock = "this kernel has no Landlock (Linux 5.13 and later, lsm=landlock)";
+constexpr const char* no_landlock =
+    "this kernel has no Landlock, which needs Linux 5.13 or later and lsm=landlock";
 
 }  // namespace
 

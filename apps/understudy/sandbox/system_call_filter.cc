@@ -154,7 +154,7 @@ constexpr auto opening_calls =
 class Filter {
  public:
   Filter() : context_(seccomp_init(SCMP_ACT_ERRNO(EPERM)), &seccomp_release) {
-    if (!context_) trouble_ = "libseccomp makes no filter";
+    if (!context_) trouble_ = "libseccomp cannot create a filter";
   }
 
   void add(std::uint32_t action, std::span<const char* const> names) {
@@ -168,7 +168,7 @@ class Filter {
     const int result =
         seccomp_rule_add_array(context_.get(), action, call, unsigned(arguments.size()), arguments.begin());
     if (result != 0)
-      trouble_ = fmt::format("libseccomp takes no rule for {}: {}", name, std::strerror(-result));
+      trouble_ = fmt::format("libseccomp rejects the rule for {}: {}", name, std::strerror(-result));
   }
 
   void allow(const char* name, std::initializer_list<scmp_arg_cmp> arguments) {
@@ -180,11 +180,11 @@ class Filter {
     // All threads that there are, such as a driver's. A tree of comparisons takes less time than a list.
     int result = seccomp_attr_set(context_.get(), SCMP_FLTATR_CTL_TSYNC, 1);
     if (result != 0)
-      return fmt::format("libseccomp does not restrict threads that are there: {}", std::strerror(-result));
+      return fmt::format("libseccomp cannot restrict existing threads: {}", std::strerror(-result));
     seccomp_attr_set(context_.get(), SCMP_FLTATR_CTL_OPTIMIZE, 2);
     result = seccomp_load(context_.get());
     return result == 0 ? std::string()
-                       : fmt::format("the kernel takes no seccomp filter: {}", std::strerror(-result));
+                       : fmt::format("the kernel rejects the seccomp filter: {}", std::strerror(-result));
   }
 
  private:
@@ -254,7 +254,7 @@ void allow_opening(Filter& filter, Opening opening) {
 
 std::string restrict_system_calls(const SystemCalls& calls) {
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
-    return fmt::format("the kernel does not forbid new privileges: {}", std::strerror(errno));
+    return fmt::format("the kernel cannot disable new privileges: {}", std::strerror(errno));
   Filter filter;
   filter.add(SCMP_ACT_ALLOW, always);
   allow_by_arguments(filter);

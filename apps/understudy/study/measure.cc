@@ -86,7 +86,7 @@ std::vector<Setting> settings(bool quick) {
 }
 
 Difference difference(std::span<const std::array<double, 4>> a, std::span<const std::array<double, 4>> b) {
-  if (a.size() != b.size()) throw std::invalid_argument("rays that are compared must be as many");
+  if (a.size() != b.size()) throw std::invalid_argument("the numbers of compared rays differ");
   Difference result;
   if (a.empty()) return result;
   std::vector<double> squares, greatest;

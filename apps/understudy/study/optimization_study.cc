@@ -90,7 +90,7 @@ Shown show(const Scene& scene, const Show& how, const fs::path& folder, bool nev
   std::vector<double> times;
   for (const auto& frame : json.at("frames_detail"))
     if (frame.at("substituted") > 0) times.push_back(frame.at("time_ms"));
-  if (int(times.size()) != frames) throw std::runtime_error("not every frame was drawn by the nodes");
+  if (int(times.size()) != frames) throw std::runtime_error("not every frame was substituted");
   times.erase(times.begin(), times.begin() + frames_that_settle);
   shown.ms = median(std::move(times));
   return shown;
@@ -104,7 +104,7 @@ double largest_difference(const fs::path& a, const fs::path& b) {
     if (name.find("_alpha") != std::string::npos) continue;
     const RgbaImage one = read_image(entry.path()), other = read_image(b / name);
     ++compared;
-    if (one.rgba.size() != other.rgba.size()) throw std::runtime_error("images differ in size");
+    if (one.rgba.size() != other.rgba.size()) throw std::runtime_error("the images differ in size");
     for (std::size_t i = 0; i < one.rgba.size(); ++i)
       most = std::max(most, std::abs(double(one.rgba[i]) - double(other.rgba[i])));
   }

@@ -40,17 +40,17 @@ OtherPrograms::OtherPrograms(fs::path folder) : folder_(std::move(folder)) {
   fs::create_directories(folder_);
   if (!fs::exists(viewer_program()))
     absent_[Scheme::bare_viewer] =
-        viewer_program().string() + " is not there; build the target understudy-viewer";
+        viewer_program().string() + " does not exist; build the target understudy-viewer";
   std::string vtk;
   if (!program_on_path("xvfb-run")) {
-    vtk = "xvfb-run is not there; apt install xvfb";
+    vtk = "xvfb-run is not installed; apt install xvfb";
   } else if (!fs::exists(vtk_script())) {
-    vtk = vtk_script().string() + " is not there; build the target understudy";
+    vtk = vtk_script().string() + " does not exist; build the target understudy";
   } else {
     try {
       output_of({python, "-c", "import vtk, numpy"}, folder_ / "vtk.txt");
     } catch (const std::runtime_error&) {
-      vtk = "it is not installed; apt install python3-vtk9 python3-numpy";
+      vtk = "VTK or NumPy is not installed; apt install python3-vtk9 python3-numpy";
     }
   }
   if (!vtk.empty()) absent_[Scheme::vtk_gpu] = absent_[Scheme::vtk_fixed_point] = vtk;
@@ -86,7 +86,7 @@ OtherPrograms::Drawn OtherPrograms::bare_viewer(const Scene& scene) const {
   Drawn drawn{median(std::move(times)), volume::Image({0, 0, scene.edge(), scene.edge()})};
   const RgbaImage image = read_image(screenshot);
   if (image.width != scene.edge() || image.height != scene.edge())
-    throw std::runtime_error("understudy-viewer's image has another size");
+    throw std::runtime_error("understudy-viewer's image has a wrong size");
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
       std::copy_n(image.pixel(x, image.height - 1 - y), 4, drawn.image.at(x, y));
@@ -105,7 +105,7 @@ OtherPrograms::Drawn OtherPrograms::vtk(const Scene& scene, const char* mapper) 
   std::ifstream file(floats, std::ios::binary);
   if (!file.read(reinterpret_cast<char*>(drawn.image.rgba.data()),
                  std::streamsize(sizeof(float) * drawn.image.rgba.size())))
-    throw std::runtime_error("VTK left no whole image");
+    throw std::runtime_error("VTK wrote no complete image");
   return drawn;
 }
 
@@ -119,7 +119,7 @@ Point OtherPrograms::measure(const Scene& scene, const Setting& setting, Scene::
   } catch (const nlohmann::json::exception& error) {
     throw std::runtime_error(error.what());
   } catch (const std::invalid_argument&) {
-    throw std::runtime_error("a time that is no number");
+    throw std::runtime_error("a frame time is not a number");
   }
   Point point{setting};
   point.time_ms = drawn.time_ms;

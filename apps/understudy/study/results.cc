@@ -43,7 +43,7 @@ Json json_of(const Point& point) {
 Point point_of(const Json& json) {
   Point point;
   const auto scheme = std::ranges::find(all_schemes, json.at("scheme").get<std::string>(), name_of);
-  if (scheme == all_schemes.end()) throw std::invalid_argument("a scheme that is not known");
+  if (scheme == all_schemes.end()) throw std::invalid_argument("unknown scheme");
   point.setting = {*scheme, json.at("step"), json.at("termination")};
   point.error = {json.at("max"), json.at("rms"), json.at("rms_colour"), json.at("rms_interval"),
                  json.at("quantiles")};
@@ -142,7 +142,7 @@ void write(const std::filesystem::path& path, const std::string& text) {
   std::ofstream file(part, std::ios::binary);
   file << text;
   file.close();
-  if (!file) throw std::runtime_error(part.string() + ": cannot be written; is the disk full?");
+  if (!file) throw std::runtime_error(part.string() + ": cannot be written; check that the disk is not full");
   std::filesystem::rename(part, path);
 }
 

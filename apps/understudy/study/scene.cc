@@ -226,7 +226,7 @@ void Scene::hand_out(const std::filesystem::path& texels, const std::filesystem:
   file.close();
   if (!raw || !file)
     throw std::runtime_error(texels.string() + " or " + description.string() +
-                             ": cannot be written; is the disk full?");
+                             ": cannot be written; check that the disk is not full");
 }
 
 void Scene::integrate(const std::function<void(double done)>& progress) {

@@ -85,7 +85,7 @@ std::vector<SceneDescription> scenes_of(const StudyArguments& arguments) {
     if (std::ranges::find(all, name, &SceneDescription::name) == all.end()) {
       std::string names;
       for (const SceneDescription& scene : built_in_scenes()) names += " " + scene.name;
-      throw std::invalid_argument(fmt::format("there is no scene '{}'; there are{}", name, names));
+      throw std::invalid_argument(fmt::format("there is no scene '{}'; give one of{}", name, names));
     }
   for (const std::string& given : arguments.volumes) {
     const std::size_t comma = given.rfind(',');
@@ -134,7 +134,7 @@ std::vector<Setting> missing_settings(SceneResults& results, bool quick, OtherPr
     if (results.find(setting) != nullptr) continue;
     std::optional<std::string> absence;
     if (is_other_program(setting.scheme))
-      absence = others == nullptr ? "not asked for" : others->absence(setting.scheme);
+      absence = others == nullptr ? "not measured, because of --alone" : others->absence(setting.scheme);
     if (absence)
       results.absent[name_of(setting.scheme)] = *absence;
     else
@@ -202,7 +202,7 @@ void study_scene(const SceneDescription& description, SceneResults& results, Res
   Scene scene(description, all.edge, all.stride);
   if (optimizations_of) {
     results.savings = savings_of(scene, folder / "left-out", [&](const std::string& item) {
-      progress.show(0, "without leaving out " + item);
+      progress.show(0, "without the optimization " + item);
     });
     write_results(folder, all);
   }
@@ -210,7 +210,7 @@ void study_scene(const SceneDescription& description, SceneResults& results, Res
   scene.integrate([&](double done) { progress.show(reference_share * done, "reference"); });
   if (std::ranges::all_of(scene.exact(), [](const auto& ray) { return *std::ranges::max_element(ray) <= 0; }))
     throw std::invalid_argument(
-        fmt::format("{}: nothing of {} shows ({}); give another table or another volume", description.name,
+        fmt::format("{}: nothing of {} is visible ({}); give another table or another volume", description.name,
                     description.volume, description.shows));
   results.size = scene.size();
   results.rays = int(scene.exact().size());
@@ -242,11 +242,10 @@ int write_page(const fs::path& folder) {
     status = 127;
   }
   if (status != 0)
-    fmt::print(
-        stderr,
-        "study: {} and study.csv are written, but no index.html: it needs python3 and matplotlib; apt install "
-        "python3-matplotlib, then give the same command again, which measures nothing twice\n",
-        (folder / "study.json").string());
+    fmt::print(stderr,
+               "study: {} and study.csv were written, but not index.html, which needs python3 and matplotlib; "
+               "apt install python3-matplotlib, then repeat the command, which measures nothing twice\n",
+               (folder / "study.json").string());
   return status == 0 ? 0 : 1;
 }
 
@@ -261,16 +260,16 @@ void print_advantages(const SceneResults& scene) {
     fmt::print("  {:<44} {:8.2f} ms   RMS {:.1e} of colour", name_of(point.setting.scheme), point.time_ms,
                point.error.colour);
     if (const auto advantage = advantage_over(scene.points, point.setting.scheme))
-      fmt::print("; at its error our time is less by {}, at its time our error by {}",
-                 text_of("a factor of", advantage->time, "nothing: none is as exact"),
-                 text_of("a factor of", advantage->error, "nothing: none is as fast"));
+      fmt::print("; our advantage in time at equal error: {}, in error at equal time: {}",
+                 text_of("a factor of", advantage->time, "none, since no setting is as exact"),
+                 text_of("a factor of", advantage->error, "none, since no setting is as fast"));
     fmt::print("\n");
   }
   for (const auto& [program, why] : scene.absent) fmt::print("  {:<44} absent: {}\n", program, why);
 }
 
 void print_savings(const SceneResults& scene) {
-  if (!scene.savings.empty()) fmt::print("  left out, and what it would cost:\n");
+  if (!scene.savings.empty()) fmt::print("  skipped work, and frame times with and without skipping it:\n");
   for (const Saving& saving : scene.savings) {
     if (!saving.absent.empty())
       fmt::print("  {:<20} absent: {}\n", saving.item, saving.absent);
@@ -308,9 +307,8 @@ void study_scenes(const std::vector<SceneDescription>& scenes, const StudyArgume
 void print_results(const Results& results) {
   for (const SceneResults& scene : results.scenes) {
     fmt::print(
-        "{}: {} rays, reference {:.1f} s ({:.0f} rays/s); a voxel's optical depth up to {:.3g}, opacity "
-        "changes "
-        "by up to {:.3g} from voxel to voxel\n",
+        "{}: {} rays, reference {:.1f} s ({:.0f} rays/s); optical depth of a voxel up to {:.3g}, change of "
+        "opacity between voxels up to {:.3g}\n",
         scene.name, scene.rays, scene.reference_seconds, scene.rays / std::max(scene.reference_seconds, 1e-9),
         scene.stiffness.depth, scene.stiffness.change);
     for (const Point& point : scene.points)
@@ -331,7 +329,7 @@ int run_study(const StudyArguments& arguments) {
   fs::create_directories(folder, error);
   if (error || ::access(folder.c_str(), W_OK) != 0)
     throw std::runtime_error(
-        fmt::format("{}: no folder that can be written to; give another one with --out", folder.string()));
+        fmt::format("{}: not a folder that can be written to; give another one with --out", folder.string()));
   const int edge = arguments.edge > 0 ? arguments.edge : arguments.quick ? quick_edge : whole_edge;
   const int stride = std::min(arguments.quick ? quick_stride : whole_stride, edge);
   Results results = arguments.fresh ? Results{edge, stride, {}} : read_results(folder, edge, stride);
@@ -348,17 +346,22 @@ int run_study(const StudyArguments& arguments) {
 void add_study(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<StudyArguments>();
   CLI::App* command = app.add_subcommand(
-      "study", "error against run time: many settings on several scenes, as tables, plots and a page");
-  command->add_option("--scene", arguments->scenes, "of the built-in ones only these")->type_name("NAME");
+      "study",
+      "measures error and run time of many settings on several scenes, and writes tables, plots and a page");
+  command->add_option("--scene", arguments->scenes, "study only these built-in scenes")->type_name("NAME");
   command
       ->add_option("--volume", arguments->volumes,
-                   "a file as a scene of its own, with a built-in table or a file of control points")
+                   "add a volume file as a scene, with a built-in transfer function (default: grey) or one in "
+                   "a file of control points")
       ->type_name("FILE[,TABLE]");
-  command->add_flag("--quick", arguments->quick, "fewer settings, smaller images, fewer repetitions");
-  command->add_option("--size", arguments->edge, "edge of the images, in pixels")->check(CLI::Range(8, 4096));
-  command->add_flag("--fresh", arguments->fresh, "measure again what an earlier study in DIR has measured");
-  command->add_flag("--alone", arguments->alone, "without the bare viewer and VTK beside it");
-  command->add_option("--out", arguments->out, "where study.json, study.csv, error maps and index.html go")
+  command->add_flag("--quick", arguments->quick, "use fewer settings, smaller images and fewer repetitions");
+  command
+      ->add_option("--size", arguments->edge, "edge of the images, in pixels (default: 512, with --quick 256)")
+      ->check(CLI::Range(8, 4096));
+  command->add_flag("--fresh", arguments->fresh,
+                    "repeat what an earlier study in the folder of --out has measured");
+  command->add_flag("--alone", arguments->alone, "do not run the bundled viewer and VTK for comparison");
+  command->add_option("--out", arguments->out, "folder for study.json, study.csv, error maps and index.html")
       ->type_name("DIR")
       ->capture_default_str();
   add_progress_options(*command, arguments->progress);

@@ -76,7 +76,7 @@ def work_precision(scene):
             elif point["time_ms"] is None:
                 axes.axhline(point["rms_colour"], color="grey", linestyle="--" if point["step"] == 1 else ":", linewidth=1,
                              label=f"{point['scheme']}, step {point['step']:g}")
-        axes.set_xlabel("ms an image")
+        axes.set_xlabel("ms per image")
         axes.set_ylabel("RMS error of colour against the integral")
     return plot(draw, f"{scene['name']}: error over time")
 
@@ -93,12 +93,12 @@ def convergence(scene):
             label = scheme + (f", slope {order['slope']:.2f} over {range_of(order)}" if order is not None else "")
             axes.loglog([p["step"] for p in points], [p["rms"] for p in points], "o-", color=colour, label=label)
             axes.loglog([p["step"] for p in points], [p["quantiles"][2] for p in points], "--", color=colour, linewidth=1,
-                        label="99 % of rays are below")
-            axes.loglog([p["step"] for p in points], [p["max"] for p in points], ":", color=colour, label="its maximum")
+                        label="99th percentile of rays")
+            axes.loglog([p["step"] for p in points], [p["max"] for p in points], ":", color=colour, label="maximum")
             bounded = [p for p in points if p["bound"]]
             if bounded:
                 axes.loglog([p["step"] for p in bounded], [p["bound"] for p in bounded], "-.", color=colour, linewidth=1,
-                            label="certified bound of that")
+                            label="certified bound of the maximum")
         axes.set_xlabel("step in voxels")
         axes.set_ylabel("error against the integral")
     return plot(draw, f"{scene['name']}: error over step")
@@ -113,8 +113,8 @@ def factor(ratio):
 
 def advantages(study):
     """Time and error of the other programs, and by what our front is better."""
-    rows = ["<tr><th>scene<th class=name>program<th>ms<th>RMS of colour<th>its time over ours, at its error"
-            "<th>its error over ours, in its time</tr>"]
+    rows = ["<tr><th>scene<th class=name>program<th>ms<th>RMS of colour<th>its time / ours, at equal error"
+            "<th>its error / ours, at equal time</tr>"]
     for scene in study["scenes"]:
         points = {point["scheme"]: point for point in scene["points"]}
         for name, ratios in scene["advantages"].items():
@@ -127,8 +127,8 @@ def advantages(study):
 
 
 def table(scene):
-    rows = ["<tr><th>setting<th>RMS<th>of 95 %<th>median<th>95 %<th>99 %<th>max<th>certified bound<th>PSNR<th>ms<th>quartiles<th>ns a ray"
-            "<th>samples taken<th>left out</tr>"]
+    rows = ["<tr><th>setting<th>RMS<th>95 % interval<th>median<th>95 %<th>99 %<th>max<th>certified bound<th>PSNR<th>ms<th>quartiles<th>ns per ray"
+            "<th>samples taken<th>samples skipped</tr>"]
     for point in sorted(scene["points"], key=lambda p: (p["time_ms"] is None, p["time_ms"])):
         psnr = f"{-20 * math.log10(point['rms']):.1f} dB" if point["rms"] > 0 else "∞"
         left_out = f"{100 * (1 - point['samples_taken'] / point['samples']):.0f} %" if point["samples"] else "–"
@@ -155,16 +155,16 @@ def section(scene, folder):
     rate = scene["rays"] / max(scene["reference_seconds"], 1e-9)
     return (f"<h2>{html.escape(scene['name'])}</h2><p>{html.escape(scene['shows'])}. "
             f"{html.escape(Path(scene['volume']).name)}, {size} voxels; {scene['rays']} rays compared, their reference "
-            f"took {scene['reference_seconds']:.1f} s ({rate:.0f} rays a second). A voxel's optical depth is up to "
-            f"{scene['stiffness']['depth']:.3g}, and the table's opacity changes by up to {scene['stiffness']['change']:.3g} "
-            "from one sample to the next, a voxel on.</p>"
+            f"took {scene['reference_seconds']:.1f} s ({rate:.0f} rays per second). A voxel's optical depth is up to "
+            f"{scene['stiffness']['depth']:.3g}, and the opacity in the table changes by up to {scene['stiffness']['change']:.3g} "
+            "from one voxel to the next.</p>"
             f"{work_precision(scene)}{convergence(scene)}<div>{maps}</div>"
             f"<details><summary>all settings</summary>{table(scene)}</details>")
 
 
 def savings(study):
     """What was left out of frames of the viewer, and what frames take without that."""
-    rows = ["<tr><th>scene<th class=name>item<th>left out<th class=name>of<th>ms a frame<th>ms without<th>times"
+    rows = ["<tr><th>scene<th class=name>item<th>skipped<th class=name>of<th>ms per frame<th>ms without<th>ratio"
             "<th>images differ by<th>tolerance<th class=name>shown with</tr>"]
     for scene in study["scenes"]:
         for saving in scene["savings"]:
@@ -200,24 +200,23 @@ figure img {{ image-rendering: pixelated; width: 200px }}</style>
 <h1>Error against run time</h1>
 <p>{html.escape(machine['processor'])}, {machine['processors']} processors, {study['instruction_set']}; Understudy
 {html.escape(origin['version'])}, {html.escape(origin['commit'])}, {html.escape(origin['compiler'])}; {html.escape(origin['time'])}.</p>
-<p>{study['edge']}² pixels from {len(study['cameras'])} cameras. Errors are of premultiplied colour and opacity, in float, against the
-integral of the table as viewers mean it, in double precision; intervals of the RMS are by bootstrap over rays. Times are medians
-on all cores, the table prepared; settings take turns, and a light bar reaches from quartile to quartile. Numbers at points are
-steps in voxels. Dashed: what slices blended into eight bits would show, whatever their time. Red: what other
-programs show of the same scene from the first camera, with one sample a voxel; of these, errors are of colour alone. Maps of the first
-camera: black 1e-6, red 1e-4,
-white 0.1 and more.</p>
-<h2>Beside other programs</h2>
+<p>{study['edge']}² pixels from {len(study['cameras'])} cameras. Errors are those of premultiplied colour and opacity in float,
+against the integral of the transfer function in double precision; intervals of the RMS are bootstrapped over rays. Times are medians
+on all cores, with prepared tables; settings take turns, and a light bar extends from quartile to quartile. Numbers at points are
+steps in voxels. Dashed: slices that are blended with eight bits, without their time. Red: other programs on the same scene from
+the first camera, with one sample per voxel; their errors are of colour alone. Error maps are of the first camera: black 1e-6,
+red 1e-4, white 0.1 and more.</p>
+<h2>Comparison with other programs</h2>
 {advantages(study)}
-<p>Both factors are read off our Pareto front, between two settings in logarithms; ≥ where the front ends before, – where none
-of our settings is as exact, or as fast. The bare viewer draws slices by OpenGL in software, as Mesa's llvmpipe does.</p>
-<h2>What is left out</h2>
+<p>Both factors are read from our Pareto front, interpolated between two settings in logarithms; ≥ means that the front ends
+earlier, and – that none of our settings is as exact, or as fast. The bare viewer draws slices by OpenGL in software (Mesa's llvmpipe).</p>
+<h2>Skipped work</h2>
 {savings(study)}
-<p>Frames of the bundled viewer under Understudy, as usual, and with one item done nevertheless. Of samples, all are those
-that the rays have; differences are the greatest of any channel of any frame, in float.</p>
+<p>Frames of the bundled viewer under Understudy, with all optimizations and with one of them disabled. Samples are counted over
+all rays; differences are the greatest of any channel of any frame, in float.</p>
 <h2>Stiffness, and observed order of accuracy</h2>
-<table><tr><th>scene<th>optical depth of a voxel<th>change of opacity a voxel{"".join(f"<th>{scheme}" for scheme in COLOURS)}</tr>{orders}</table><p>Theory: {EXPECTED}.
-An order is the slope over the steps in brackets, in voxels: the asymptotic range, in which slopes from step to step agree.</p>
+<table><tr><th>scene<th>optical depth of a voxel<th>change of opacity per voxel{"".join(f"<th>{scheme}" for scheme in COLOURS)}</tr>{orders}</table><p>Theory: {EXPECTED}.
+An order is the slope over the steps in parentheses, in voxels: the asymptotic range, in which the slopes between steps agree.</p>
 {"".join(section(scene, folder) for scene in study["scenes"])}</html>
 """
     part = folder / "index.html.part"

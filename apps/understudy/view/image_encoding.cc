@@ -37,8 +37,9 @@ std::vector<std::byte> png_of(const RgbImage& rgb_image) {
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::vector<std::byte> bytes(size);
   if (png_image_write_to_memory(&png, bytes.data(), &size, 0, rgb_image.rgb.data(), 0, nullptr) == 0)
-    throw std::runtime_error(fmt::format("an image of {} x {} is not to be written as PNG: {}", rgb_image.width,
-                                         rgb_image.height, static_cast<const char*>(png.message)));
+    throw std::runtime_error(fmt::format("an image of {} x {} pixels cannot be encoded as PNG: {}",
+                                         rgb_image.width, rgb_image.height,
+                                         static_cast<const char*>(png.message)));
   bytes.resize(size);
   return bytes;
 }

@@ -17,9 +17,10 @@
 namespace launcher = understudy::launcher;
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Shows what render nodes draw.", "understudy"};
+  CLI::App app{"Shows volume files in a browser or a window.", "understudy"};
   app.formatter(std::make_shared<launcher::HelpLayout>());
   app.require_subcommand(1);
+  app.set_help_flag("-h,--help", "print this help and exit");
   std::function<int()> chosen;
   launcher::add_view(app, chosen);
   launcher::group_options(app);

@@ -24,7 +24,7 @@ std::string digits_of(std::span<const unsigned char> bytes) {
 }  // namespace
 
 std::string random_digits(std::size_t bytes) {
-  if (::sodium_init() < 0) throw std::runtime_error("the system gives no random numbers");
+  if (::sodium_init() < 0) throw std::runtime_error("the system provides no random numbers");
   std::vector<unsigned char> random(bytes);
   ::randombytes_buf(random.data(), random.size());
   return digits_of(random);

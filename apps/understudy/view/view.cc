@@ -38,8 +38,8 @@ int view(const ViewArguments& arguments) {
   FileScene scene = scene_of(arguments.scene);
   if (std::min(scene.image.width, scene.image.height) < least_view_side ||
       std::max(scene.image.width, scene.image.height) > most_view_side)
-    throw std::invalid_argument(fmt::format("a view of {} pixels; give {} to {} a side", arguments.scene.size,
-                                            least_view_side, most_view_side));
+    throw std::invalid_argument(fmt::format("'{}' is not the size of a view; each side must be {} to {} pixels",
+                                            arguments.scene.size, least_view_side, most_view_side));
   widen_ghost_layer(scene);
   const RankMemory memory = [&](int ranks) {
     return memory_for_volume(arguments.memory, ranks, ranks_are_here(arguments.nodes),
@@ -62,30 +62,33 @@ void add_view(CLI::App& app, std::function<int()>& chosen) {
   add_scene_options(*command, arguments->scene);
   add_loading_nodes(*command, arguments->nodes);
   add_memory_option(*command, arguments->memory,
-                    "what each rank may take: as many time steps of a series stay loaded as fit");
-  CLI::Option* web = command
-                         ->add_option("--web", arguments->port,
-                                      "show in browsers, by the link that is printed; 0 takes any free port")
-                         ->check(CLI::Range(0, last_port))
-                         ->type_name("PORT");
+                    "memory limit of each rank; as many time steps of a series stay loaded as fit");
+  CLI::Option* web =
+      command
+          ->add_option("--web", arguments->port,
+                       "show the volume in browsers, under the link that is printed; port 0 takes any free one")
+          ->check(CLI::Range(0, last_port))
+          ->type_name("PORT");
   command
       ->add_option("--bind", arguments->host,
-                   "address to listen at instead of this machine alone. Connections are not encrypted; "
+                   "address to listen on, by default on this machine only; connections are not encrypted, and "
                    "browsers elsewhere need `ssh -L` (docs/view.md)")
       ->type_name("HOST")
       ->needs(web)
       ->capture_default_str();
   CLI::Option* frames =
-      command->add_option("--frames", arguments->script.frames, "close the window after so many")
+      command->add_option("--frames", arguments->script.frames, "close the window after this many frames")
           ->check(CLI::Range(1, max_frames))
           ->excludes(web);
-  command->add_option("--orbit", arguments->script.orbit, "degrees of azimuth from one frame to the next")
+  command
+      ->add_option("--orbit", arguments->script.orbit, "degrees of azimuth to turn from one frame to the next")
       ->needs(frames);
   command
-      ->add_flag("--play", arguments->script.plays,
-                 "of a series: start the window playing; with --frames, each frame shows the next time step")
+      ->add_flag(
+          "--play", arguments->script.plays,
+          "play the time steps of a series from the start; with --frames, each frame shows the next time step")
       ->excludes(web);
-  command->add_option("--save", arguments->script.save, "the last frame")
+  command->add_option("--save", arguments->script.save, "PNG file for the last frame")
       ->type_name("P.png")
       ->needs(frames)
       ->check(can_be_written(".png"));

@@ -23,7 +23,7 @@ constexpr double longest_wait_ms = 1e6;
 }
 
 double number_in(const char* key, const Json& json, double least, double most) {
-  if (!json.is_number()) fail(key, "is no number");
+  if (!json.is_number()) fail(key, "is not a number");
   const auto value = json.get<double>();
   if (!(value >= least && value <= most)) fail(key, fmt::format("is not between {:g} and {:g}", least, most));
   return value;
@@ -36,7 +36,7 @@ bool flag_in(const char* key, const Json& json) {
 
 template <std::size_t count>
 std::array<double, count> numbers_in(const char* key, const Json& json, double least, double most) {
-  if (!json.is_array() || json.size() != count) fail(key, fmt::format("is no list of {}", count));
+  if (!json.is_array() || json.size() != count) fail(key, fmt::format("is not a list of {} numbers", count));
   std::array<double, count> values{};
   for (std::size_t i = 0; i < count; ++i) values[i] = number_in(key, json[i], least, most);
   return values;
@@ -69,19 +69,19 @@ volume::TransferControlPoints table_in(const Json& json) {
     fail(key, fmt::format("has more than {} control points", max_view_control_points));
   try {
     volume::TransferControlPoints table = control_points_in(json);
-    if (table.of_values) fail(key, "is of values, not of places in the range");
+    if (table.of_values) fail(key, "has positions that are values, instead of positions in the range");
     return table;
   } catch (const MalformedView&) {
     throw;
   } catch (const std::exception& error) {
-    fail(key, fmt::format("is no transfer function: {}", error.what()));
+    fail(key, fmt::format("is not a transfer function: {}", error.what()));
   }
 }
 
 std::vector<SurfaceChoice> surfaces_in(const Json& json) {
   constexpr const char* key = "surfaces";
   if (!json.is_array() || json.size() > volume::max_surfaces)
-    fail(key, fmt::format("is no list of at most {}", volume::max_surfaces));
+    fail(key, fmt::format("is not a list of at most {} surfaces", volume::max_surfaces));
   std::vector<SurfaceChoice> surfaces;
   for (const Json& entry : json) {
     SurfaceChoice& surface = surfaces.emplace_back();
@@ -99,10 +99,10 @@ std::vector<SurfaceChoice> surfaces_in(const Json& json) {
 ViewMessage decode_view_message(std::string_view text) {
   if (text.size() > max_view_message_bytes)
     throw MalformedView(
-        fmt::format("a message of {} bytes is over the limit of {}", text.size(), max_view_message_bytes));
+        fmt::format("a message of {} bytes exceeds the limit of {}", text.size(), max_view_message_bytes));
   // Text that is no JSON gives a value that is discarded, and is no object.
   const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) throw MalformedView("the message is no JSON object");
+  if (!json.is_object()) throw MalformedView("the message is not a JSON object");
   ViewMessage message;
   for (const auto& [key, value] : json.items()) {
     if (key == "sequence")
@@ -119,7 +119,7 @@ ViewMessage decode_view_message(std::string_view text) {
     } else if (key == "camera")
       message.camera = camera_in(value);
     else if (key == "rotate") {
-      if (!value.is_array() || value.size() != 2) fail("rotate", "is no list of two points");
+      if (!value.is_array() || value.size() != 2) fail("rotate", "is not a list of two points");
       message.rotate = {point_in("rotate", value[0]), point_in("rotate", value[1])};
     } else if (key == "pan")
       message.pan = point_in("pan", value);
@@ -139,7 +139,7 @@ ViewMessage decode_view_message(std::string_view text) {
     else if (key == "time_step")
       message.time_step = int(number_in("time_step", value, 0, double(volume::max_time_steps)));
     else
-      throw MalformedView("a key that no page sends");
+      throw MalformedView("the message has an unknown key");
   }
   return message;
 }

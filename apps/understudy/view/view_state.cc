@@ -32,7 +32,7 @@ ViewState::ViewState(const FileScene& scene)
 
 void ViewState::apply(const ViewMessage& message) {
   if (message.time_step && *message.time_step >= time_steps_)
-    throw MalformedView(fmt::format("'time_step' is not below {}", time_steps_));
+    throw MalformedView(fmt::format("'time_step' must be less than {}", time_steps_));
   time_step_ = message.time_step.value_or(time_step_);
   sequence_ = message.sequence;
   still_ = message.still;

@@ -164,17 +164,19 @@ class WebServer::Listener::Connection : public std::enable_shared_from_this<Conn
     const auto& request = parser_.get();
     const std::string_view host = text_of(request[http::field::host]);
     if (!is_own_host(host, listener_.host_))
-      return answer(http::status::misdirected_request, "text/plain",
-                    "This server answers to localhost and to addresses.\n");
+      return answer(
+          http::status::misdirected_request, "text/plain",
+          "This server answers only requests to localhost, to IP addresses and to the host of --bind.\n");
     if (websocket::is_upgrade(request)) {
       if (text_of(request.target()) != socket_path)
-        return answer(http::status::not_found, "text/plain", "There is no conversation here.\n");
+        return answer(http::status::not_found, "text/plain", "There is no WebSocket at this path.\n");
       if (!is_own_origin(text_of(request[http::field::origin]), host))
-        return answer(http::status::forbidden, "text/plain", "This page was not served here.\n");
+        return answer(http::status::forbidden, "text/plain",
+                      "Connections from pages of other servers are rejected.\n");
       return converse();
     }
     if (request.method() != http::verb::get)
-      return answer(http::status::method_not_allowed, "text/plain", "Only GET.\n");
+      return answer(http::status::method_not_allowed, "text/plain", "Only GET requests are supported.\n");
     for (const PageFile& file : page_files())
       if (text_of(request.target()) == file.path) return answer(http::status::ok, file.type, file.text);
     answer(http::status::not_found, "text/plain", "There is no such page.\n");
@@ -234,7 +236,7 @@ class WebServer::Listener::Connection : public std::enable_shared_from_this<Conn
     const auto data = buffer_.cdata();
     const std::string words(static_cast<const char*>(data.data()), data.size());
     buffer_.consume(buffer_.size());
-    if (!conversation_->got_text()) return refuse("viewers speak in text");
+    if (!conversation_->got_text()) return refuse("messages of viewers must be text");
     if (is_viewer_) {
       listener_.handlers_.said(number_, words);
       return read();
@@ -243,9 +245,9 @@ class WebServer::Listener::Connection : public std::enable_shared_from_this<Conn
     const auto proof = answer.is_object() ? answer.find("proof") : answer.end();
     if (proof == answer.end() || !proof->is_string() ||
         !equal(proof->get_ref<const std::string&>(), proof_of(listener_.secret_, challenge_)))
-      return refuse("the secret is not this session's; use the link that the terminal shows");
+      return refuse("the secret is not this session's; use the link that is shown in the terminal");
     if (listener_.viewers() >= listener_.limits_.viewers)
-      return refuse(fmt::format("{} viewers are here already; close one", listener_.limits_.viewers));
+      return refuse(fmt::format("{} viewers are connected already; close one", listener_.limits_.viewers));
     is_viewer_ = true;
     greeting_.cancel();
     conversation_->read_message_max(max_view_message_bytes);
@@ -310,18 +312,18 @@ WebServer::Listener::Listener(const std::string& host, int port, std::string sec
   error_code error;
   tcp::resolver resolver(io_);
   const auto found = resolver.resolve(host, std::to_string(port), tcp::resolver::passive, error);
-  check(error, "is no address of this machine");
+  check(error, "not an address of this machine");
   const tcp::endpoint endpoint = found.begin()->endpoint();
   acceptor_.open(endpoint.protocol(), error);
-  check(error, "cannot be listened on");
+  check(error, "cannot listen on this address");
   keep_to_this_program(acceptor_.native_handle());
   acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
   acceptor_.bind(endpoint, error);
-  check(error, "cannot be listened on");
+  check(error, "cannot listen on this address");
   acceptor_.listen(tcp::acceptor::max_listen_connections, error);
-  check(error, "cannot be listened on");
+  check(error, "cannot listen on this address");
   port_ = acceptor_.local_endpoint(error).port();
-  check(error, "has no port");
+  check(error, "the port is unknown");
 }
 
 void WebServer::Listener::start() {

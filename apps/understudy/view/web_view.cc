@@ -152,10 +152,11 @@ class WebView {
     while (!stop_.stop_requested()) {
       // What follows is meant for applications, which can draw by themselves.
       reason = reason.substr(0, reason.find(';'));
-      logging::log(logging::Level::warn, "the render nodes are gone ({}); the volume is read again", reason);
+      logging::log(logging::Level::warn, "the render nodes are gone ({}); reading the volume again", reason);
       say(Readiness::lost,
-          fmt::format("The render nodes are gone ({}); the volume is read again as soon as there are others.",
-                      reason),
+          fmt::format(
+              "The render nodes are gone ({}). The volume is read again as soon as new nodes are available.",
+              reason),
           0);
       pause();
       try {
@@ -305,7 +306,7 @@ class WebView {
 void show_on_web(const FileScene& scene, const ServiceMaker& make, const RankMemory& memory,
                  const std::stop_token& stop, const WebAddress& address) {
   WebView view(scene, make, memory, stop, address);
-  std::printf("understudy: look at it under %s\n", view.server().link().c_str());
+  std::printf("understudy: open this link in a browser: %s\n", view.server().link().c_str());
   std::fflush(stdout);
   view.run();
 }

@@ -31,7 +31,7 @@ constexpr double key_step = 0.1;
 
 [[noreturn]] void fail(const char* what) {
   throw std::runtime_error(
-      fmt::format("{} ({}); on a machine without a display give --web 0, and look at it in a browser", what,
+      fmt::format("{} ({}); on a machine without a display, give --web 0 and open the link in a browser", what,
                   SDL_GetError()));
 }
 
@@ -43,7 +43,7 @@ struct Video {
     SDL_SetHint(SDL_HINT_RENDER_DRIVER, "software");
     // Signals that ask for the end are not SDL's.
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
-    if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) fail("there is no display for a window");
+    if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) fail("no display is available for a window");
   }
   Video(const Video&) = delete;
   Video& operator=(const Video&) = delete;
@@ -62,7 +62,7 @@ class Window {
         window_(SDL_CreateWindow(name().c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED,
                                  scene.image.width, scene.image.height, SDL_WINDOW_RESIZABLE),
                 SDL_DestroyWindow) {
-    if (!window_) fail("there can be no window");
+    if (!window_) fail("the window cannot be created");
   }
 
   void run() {
@@ -100,8 +100,8 @@ class Window {
   void recover(const std::string& why) {
     std::string reason = why;
     while (!over_ && !stop_.stop_requested()) {
-      logging::log(logging::Level::warn, "the render nodes are gone ({}); the volume is read again", reason);
-      say("the render nodes are gone; the volume is read again");
+      logging::log(logging::Level::warn, "the render nodes are gone ({}); reading the volume again", reason);
+      say("the render nodes are gone; reading the volume again");
       hear(1000);
       try {
         return load();
@@ -127,8 +127,8 @@ class Window {
     file.write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
     file.close();
     if (!file)
-      throw std::runtime_error(
-          fmt::format("{} cannot be written; check that the folder exists and has room", script_.save));
+      throw std::runtime_error(fmt::format(
+          "{} cannot be written; check that the folder exists and the disk is not full", script_.save));
   }
 
   void live() {
@@ -145,7 +145,8 @@ class Window {
       if (plays_) return play_on();
       if (state_.still())
         if (const auto exactness = volume_.exactness())
-          say(fmt::format("{:.0f} ms, error {:.4f} of {} rays", drawn_ms_, exactness->error, exactness->rays));
+          say(fmt::format("{:.0f} ms, largest error {:.4f} of {} rays", drawn_ms_, exactness->error,
+                          exactness->rays));
     } else if (!state_.still() && Clock::now() - moved_ > rest) {
       state_.apply({});
       due_ = true;
@@ -192,9 +193,9 @@ class Window {
                                            SDL_PIXELFORMAT_RGB24),
         SDL_FreeSurface);
     SDL_Surface* const to = SDL_GetWindowSurface(window_.get());
-    if (!from || to == nullptr) fail("the window takes no image");
+    if (!from || to == nullptr) fail("the image cannot be drawn into the window");
     if (SDL_BlitScaled(from.get(), nullptr, to, nullptr) != 0 || SDL_UpdateWindowSurface(window_.get()) != 0)
-      fail("the window takes no image");
+      fail("the image cannot be drawn into the window");
   }
 
   void say(const std::string& what) {

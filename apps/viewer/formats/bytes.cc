@@ -49,7 +49,7 @@ Read gzip_reader(const std::string& path, std::int64_t offset) {
   });
   if (!file) throw_unreadable(path, std::strerror(errno));
   if (offset > 0 && gzseek64(file.get(), offset, SEEK_SET) != offset)
-    throw_unreadable(path, "no such position");
+    throw_unreadable(path, "the position does not exist");
   return [file, path](std::byte* destination, std::int64_t count) {
     const int got = gzread(file.get(), destination, static_cast<unsigned>(count));
     int code = Z_OK;

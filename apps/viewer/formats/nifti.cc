@@ -109,7 +109,7 @@ Volume load_nifti(const std::string& path) {
   const std::int64_t offset = std::max<std::int64_t>(image->iname_offset, 0);
   // niftiio's own reader turns NaN into 0 silently; ours keeps them to be counted.
   volume.voxels = read_bytes(image->iname, offset, bytes, Remainder::allowed,
-                             fmt::format("the header of {} asks for {} voxels of {} bytes; get the file again",
+                             fmt::format("the header of {} requires {} voxels of {} bytes; get the file again",
                                          path, text_of(volume.size), image->nbyper));
   if (image->byteorder != nifti_short_order())
     swap_byte_order(volume.voxels, static_cast<std::size_t>(std::max(image->swapsize, 1)));

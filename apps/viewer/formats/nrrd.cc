@@ -56,11 +56,9 @@ Axes axes_of(const Nrrd& nrrd, const std::string& path) {
   for (unsigned axis = 0; axis < nrrd.dim; ++axis)
     if (nrrd.dim == 3 || nrrd.axis[axis].size != 1) spatial.push_back(axis);
   if (spatial.size() != 3)
-    throw Error(
-        ExitCode::bad_file,
-        fmt::format("{}: has {} axes longer than 1, a scalar volume has 3; cut it first, for example with "
-                    "`unu slice`",
-                    path, spatial.size()));
+    throw Error(ExitCode::bad_file, fmt::format("{}: {} axes are longer than 1, but a scalar volume has 3 "
+                                                "axes; slice it first, for example with `unu slice`",
+                                                path, spatial.size()));
   Axes axes{};
   for (int i = 0; i < 3; ++i) {
     axes.size[i] = static_cast<std::int64_t>(

@@ -24,7 +24,7 @@ constexpr std::pair<std::string_view, ScalarType> long_type_names[] = {{"uint8",
 // Wrong sizes are usually a wrong type: say which type the file's length speaks for.
 std::string advice_for(const std::string& path, const VolumeSize& size, ScalarType type) {
   std::string advice =
-      fmt::format("{} voxels of {} were expected; check --size and --type", text_of(size), name_of(type));
+      fmt::format("expected {} voxels of type {}; check --size and --type", text_of(size), name_of(type));
   std::error_code no_size;
   const auto found = std::filesystem::file_size(path, no_size);
   const auto voxels = static_cast<std::uintmax_t>(size[0] * size[1] * size[2]);
@@ -82,11 +82,10 @@ std::optional<NamedLayout> layout_in_name(const std::string& path) {
 Volume load_raw(const std::string& path, const VolumeHints& hints) {
   const std::optional<NamedLayout> named = layout_in_name(path);
   if (!hints.size && !named)
-    throw Error(
-        ExitCode::bad_file,
-        fmt::format("{}: the size of these raw voxels is unknown; give --size X Y Z (and --type), or put it in "
-                    "the file's name as in engine.256x256x110",
-                    path));
+    throw Error(ExitCode::bad_file,
+                fmt::format("{}: the size of this raw file is unknown; give --size X Y Z (and --type), or put "
+                            "the size into the file's name, as in engine.256x256x110",
+                            path));
   Volume volume;
   volume.size = hints.size ? *hints.size : named->size;
   volume.type = hints.type ? *hints.type : named && named->type ? *named->type : ScalarType::u8;

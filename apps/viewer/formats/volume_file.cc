@@ -19,7 +19,7 @@ Volume load_volume(const std::string& path, const VolumeHints& hints) {
   if (!std::filesystem::exists(status))
     throw Error(ExitCode::bad_file, fmt::format("{}: no such file; check the path", path));
   if (std::filesystem::is_directory(status))
-    throw Error(ExitCode::bad_file, fmt::format("{}: is a folder; name the volume file in it", path));
+    throw Error(ExitCode::bad_file, fmt::format("{}: is a folder; give a volume file in it", path));
 
   Volume volume = is_nrrd(path) ? load_nrrd(path) : is_nifti(path) ? load_nifti(path) : load_raw(path, hints);
   volume.file = path;
@@ -29,7 +29,7 @@ Volume load_volume(const std::string& path, const VolumeHints& hints) {
     if (!(distance >= min_spacing && distance <= max_spacing))
       throw Error(
           ExitCode::bad_file,
-          fmt::format("{}: the spacing {} x {} x {} is not within {} to {}; give one with --spacing X Y Z",
+          fmt::format("{}: the spacing {} x {} x {} is not between {} and {}; give one with --spacing X Y Z",
                       path, volume.spacing[0], volume.spacing[1], volume.spacing[2], min_spacing, max_spacing));
   }
   return volume;

@@ -43,9 +43,9 @@ constexpr ControlPoint step[] = {
 };
 
 constexpr Preset all_presets[] = {
-    {"engine", "metal casting half transparent, dense inserts glowing", engine},
-    {"bone", "soft tissue as a veil, bone bright", bone},
-    {"dense", "fog everywhere, no empty voxel", dense},
+    {"engine", "semi-transparent metal casting, bright dense inserts", engine},
+    {"bone", "bright bone under a veil of soft tissue", bone},
+    {"dense", "fog everywhere, without empty voxels", dense},
     {"sparse", "only the highest values", sparse},
     {"step", "opaque above a threshold", step},
 };

@@ -47,24 +47,22 @@ std::string text_of(const VolumeSize& size) {
 std::int64_t volume_bytes(const VolumeSize& size, ScalarType type, const std::string& where) {
   for (const std::int64_t edge : size) {
     if (edge < 1)
-      throw Error(
-          ExitCode::bad_file,
-          fmt::format("{}: the size {} holds no voxels; every edge must be at least 1 (check --size or the "
-                      "sizes in the file's name or header)",
-                      where, text_of(size)));
+      throw Error(ExitCode::bad_file,
+                  fmt::format("{}: the size {} contains no voxels; every edge must be at least 1 (check "
+                              "--size, or the size in the file's name or header)",
+                              where, text_of(size)));
     if (edge > max_edge_voxels)
-      throw Error(
-          ExitCode::bad_file,
-          fmt::format("{}: the size {} has an edge over the limit of {} voxels; check the size, or cut or "
-                      "reduce the volume",
-                      where, text_of(size), max_edge_voxels));
+      throw Error(ExitCode::bad_file, fmt::format("{}: the size {} has an edge above the limit of {} voxels; "
+                                                  "check the size, or crop or downsample the volume",
+                                                  where, text_of(size), max_edge_voxels));
   }
   // Three edges of at most 2^16 and 4 bytes stay below 2^50: no overflow.
   const std::int64_t bytes = size[0] * size[1] * size[2] * static_cast<std::int64_t>(bytes_per_voxel(type));
   if (bytes > max_volume_bytes)
-    throw Error(ExitCode::bad_file,
-                fmt::format("{}: {} {} voxels are {} bytes, over the limit of {}; cut or reduce the volume",
-                            where, text_of(size), name_of(type), bytes, max_volume_bytes));
+    throw Error(
+        ExitCode::bad_file,
+        fmt::format("{}: {} {} voxels take {} bytes, above the limit of {}; crop or downsample the volume",
+                    where, text_of(size), name_of(type), bytes, max_volume_bytes));
   return bytes;
 }
 

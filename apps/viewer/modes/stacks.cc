@@ -23,11 +23,10 @@ class StacksMode : public Mode {
     GLint limit = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
     if (*std::max_element(texels_.size.begin(), texels_.size.end()) > limit)
-      throw Error(
-          ExitCode::bad_file,
-          fmt::format("{}: {} voxels are too many along one axis: this OpenGL driver's textures end at {} "
-                      "(GL_MAX_TEXTURE_SIZE); cut or reduce the volume",
-                      file, text_of(texels_.size), limit));
+      throw Error(ExitCode::bad_file,
+                  fmt::format("{}: {} voxels along one axis are too many: textures of this OpenGL driver are "
+                              "limited to {} (GL_MAX_TEXTURE_SIZE); crop or downsample the volume",
+                              file, text_of(texels_.size), limit));
   }
 
   void set_table(const Table& table) override {

@@ -48,11 +48,10 @@ Texture make_volume_texture(const VolumeTextureFormat& format, const VolumeSize&
   GLint limit = 0;
   glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limit);
   if (*std::max_element(size.begin(), size.end()) > limit)
-    throw Error(
-        ExitCode::bad_file,
-        fmt::format("{}: {} voxels are too many along one axis: this OpenGL driver's 3-D textures end at {} "
-                    "(GL_MAX_3D_TEXTURE_SIZE); cut or reduce the volume",
-                    file, text_of(size), limit));
+    throw Error(ExitCode::bad_file,
+                fmt::format("{}: {} voxels along one axis are too many: 3-D textures of this OpenGL driver are "
+                            "limited to {} (GL_MAX_3D_TEXTURE_SIZE); crop or downsample the volume",
+                            file, text_of(size), limit));
   const auto width = static_cast<GLsizei>(size[0]), height = static_cast<GLsizei>(size[1]),
              depth = static_cast<GLsizei>(size[2]);
   Texture texture = make_texture();
@@ -72,12 +71,10 @@ Texture make_volume_texture(const VolumeTextureFormat& format, const VolumeSize&
     error = glGetError();
   }
   if (error != GL_NO_ERROR)
-    throw Error(
-        ExitCode::bad_file,
-        fmt::format(
-            "{}: OpenGL refuses a {} texture of {} texels (error 0x{:x}): not enough memory; reduce the "
-            "volume, or use --mode table instead of rgba",
-            file, format.name, text_of(size), error));
+    throw Error(ExitCode::bad_file,
+                fmt::format("{}: OpenGL rejects a {} texture of {} texels (error 0x{:x}): not enough memory; "
+                            "downsample the volume, or use --mode table instead of rgba",
+                            file, format.name, text_of(size), error));
   return texture;
 }
 

@@ -128,8 +128,8 @@ class Mistakes(unittest.TestCase):
 
     def test_settings_that_are_wrong_name_what_is_right(self):
         volume = understudy.Volume(ball())
-        for settings, words in (({"camera": (1, 2)}, "3 numbers"), ({"size": (0, 5)}, "give 1 to"), ({"operator": "sum"}, "'add'"),
-                                ({"transfer_function": "heat"}, "one of grey"), ({"surfaces": ["x"]}, "no number"),
+        for settings, words in (({"camera": (1, 2)}, "3 numbers"), ({"size": (0, 5)}, "must be 1 to"), ({"operator": "sum"}, "'add'"),
+                                ({"transfer_function": "heat"}, "one of grey"), ({"surfaces": ["x"]}, "not a number"),
                                 ({"step": 0}, "positive"), ({"transfer_function": numpy.zeros((3, 3))}, r"\(N, 4\)"),
                                 ({"transfer_function": {"knots": 5}}, "knots"), ({"light": "sun"}, "'surfaces'"),
                                 ({"transfer_function": numpy.full((3, 4), numpy.nan)}, "not finite"),

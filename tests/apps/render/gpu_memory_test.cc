@@ -37,7 +37,7 @@ TEST_F(Render, SaysHowMuchGpuMemoryIsNeeded) {
               AllOf(HasSubstr("too little"), HasSubstr("2197000"), HasSubstr("at least 3M")));
   EXPECT_THAT(trouble("--backend gl --gpu-memory much"), HasSubstr("K, M, G or T, or auto"));
   EXPECT_THAT(trouble("--backend gl --gpu-memory 5MB"), HasSubstr("K, M, G or T, or auto"));
-  EXPECT_THAT(trouble("--backend gl --gpu-memory 99999999999T"), HasSubstr("more than there can be"));
+  EXPECT_THAT(trouble("--backend gl --gpu-memory 99999999999T"), HasSubstr("99999999999T is too large"));
   EXPECT_THAT(trouble("--gpu-memory 1G"), HasSubstr("--backend"));
 }
 

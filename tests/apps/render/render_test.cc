@@ -41,7 +41,7 @@ TEST_F(Render, ATimeStepOfAFileThatHoldsSeveral) {
                        image(folder_.file("step2_20x18x16.raw") + " --size 40x40"))
                 .rms,
             0);
-  EXPECT_THAT(render(series + " --time-step 3").output, HasSubstr("there is no time step 3; there are 3"));
+  EXPECT_THAT(render(series + " --time-step 3").output, HasSubstr("there is no time step 3; the series has 3"));
   const Result converted = shell(std::string(UNDERSTUDY_PROGRAM) + " convert --time-step 2 " + series + " -o " +
                                  folder_.file("s.uvol"));
   ASSERT_EQ(converted.status, 0) << converted.output;
@@ -57,7 +57,7 @@ TEST_F(Render, AnImageAndAReportOfAFile) {
                                folder_.file("r.json") + " --save-float " + folder_.file("f.pfm"));
   ASSERT_EQ(result.status, 0) << result.output;
   EXPECT_THAT(result.output, AllOf(HasSubstr("40 x 40 x 40 of f64, in this process"), HasSubstr("3 frames"),
-                                   HasSubstr("became f32 texels")));
+                                   HasSubstr("converted to f32 texels")));
   const RgbaImage image = read_image(folder_.file("p.png"));
   EXPECT_EQ(image.width, 120);
   EXPECT_EQ(image.height, 90);
@@ -161,14 +161,14 @@ TEST_F(Render, WhatIsWrongIsSaidWithTheNextStep) {
   EXPECT_THAT(trouble(folder_.write("short_9x9x9_u8.raw", std::string(700, 'x'))), HasSubstr("truncated"));
   EXPECT_THAT(trouble(file + " --transfer-function nothing"), HasSubstr("grey, engine, ct"));
   EXPECT_THAT(trouble(table("{")), HasSubstr("not a transfer function"));
-  EXPECT_THAT(trouble(table("{}")), HasSubstr("no list 'knots'"));
+  EXPECT_THAT(trouble(table("{}")), HasSubstr("list 'knots' is missing"));
   EXPECT_THAT(trouble(table(R"({"knots": [{"at": 0, "colour": [0,0,0], "opacity": 0}]})")),
               HasSubstr("too few"));
   EXPECT_THAT(trouble(table(R"({"knots": [{"at": 1, "colour": [0,0,0], "opacity": 0},
                                           {"at": 0, "colour": [0,0,0], "opacity": 0}]})")),
               HasSubstr("sort them"));
   EXPECT_THAT(trouble(table(R"({"knots": [{"at": 0, "colour": [0,0,0], "opacity": null}]})")),
-              HasSubstr("control point 1: 'opacity' is missing or no number"));
+              HasSubstr("control point 1: 'opacity' is missing or not a number"));
   EXPECT_THAT(trouble(table(R"({"knots": [{"at": 0, "colour": [0,0,0], "opacity": 0},
                                           {"at": 1, "colour": [0,0,0], "opacity": -1}]})")),
               HasSubstr("opacity is -1"));
@@ -176,7 +176,7 @@ TEST_F(Render, WhatIsWrongIsSaidWithTheNextStep) {
   EXPECT_THAT(trouble(file + " --camera 10,20,4,0,0"), HasSubstr("30,20,4"));
   EXPECT_THAT(trouble(file + " --camera 10,200,4"), HasSubstr("-90 to 90"));
   EXPECT_THAT(trouble(file + " --size 100"), HasSubstr("512x512"));
-  EXPECT_THAT(trouble(file + " --size 0x10"), HasSubstr("a side"));
+  EXPECT_THAT(trouble(file + " --size 0x10"), HasSubstr("each side"));
   EXPECT_THAT(trouble(file + " --step 0"), HasSubstr("positive"));
   EXPECT_THAT(trouble(file + " --texels u8"), HasSubstr("--range"));
   EXPECT_THAT(trouble("synthetic:8x8"), HasSubstr("synthetic:512x512x512:u8:shells"));

@@ -154,11 +154,11 @@ TEST_F(Render, ShadingWithoutSenseIsRefusedWithTheNextStep) {
   EXPECT_THAT(trouble("--method adaptive --light all"), HasSubstr("pre-integrated"));
   EXPECT_THAT(trouble("--operator first-hit --light all"), HasSubstr("leave out"));
   EXPECT_THAT(trouble("--operator sum"), HasSubstr("first-hit"));
-  EXPECT_THAT(trouble("--surface x"), AllOf(HasSubstr("no number"), HasSubstr("40%,#e8c090,0.5")));
-  EXPECT_THAT(trouble("--surface ''"), HasSubstr("no number"));
-  EXPECT_THAT(trouble("--surface nan"), HasSubstr("no number"));
-  EXPECT_THAT(trouble("--surface 0%"), HasSubstr("between 0% and 100%"));
-  EXPECT_THAT(trouble("--surface 70000"), AllOf(HasSubstr("run from 0 to"), HasSubstr("40%")));
+  EXPECT_THAT(trouble("--surface x"), AllOf(HasSubstr("not a number"), HasSubstr("40%,#e8c090,0.5")));
+  EXPECT_THAT(trouble("--surface ''"), HasSubstr("not a number"));
+  EXPECT_THAT(trouble("--surface nan"), HasSubstr("not a number"));
+  EXPECT_THAT(trouble("--surface 0%"), HasSubstr("above 0% and at most 100%"));
+  EXPECT_THAT(trouble("--surface 70000"), AllOf(HasSubstr("range from 0 to"), HasSubstr("40%")));
   EXPECT_THAT(trouble("--surface 9,blue"), HasSubstr("#rrggbb"));
   EXPECT_THAT(trouble("--surface 9,12345"), HasSubstr("#rrggbb"));
   EXPECT_THAT(trouble("--surface 9,123456,2"), HasSubstr("opacity"));

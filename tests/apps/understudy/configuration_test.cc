@@ -57,7 +57,7 @@ TEST_F(Configuration, TrueAndFalseAreOnAndOff) {
 TEST_F(Configuration, SaysInWhichLineItIsWrong) {
   EXPECT_THAT(error_of("nodes = \n"), HasSubstr("understudy.toml, line 1: "));
   EXPECT_THAT(error_of("error = 1\nnodes = [1, 2]\n"),
-              HasSubstr("understudy.toml, line 2: nodes must be a text, a number, true or false"));
+              HasSubstr("understudy.toml, line 2: nodes must be a string, a number, true or false"));
 }
 
 }  // namespace

@@ -107,7 +107,8 @@ TEST_F(UnderstudyRun, DoctorSaysWhetherTheSandboxOfGlServersHolds) {
   const bool has_seccomp = contents("/proc/self/status").find("\nSeccomp:\t") != std::string::npos;
   const std::string output = understudy("doctor").output;
   EXPECT_THAT(output, HasSubstr(has_seccomp ? "\nok       sandbox           seccomp" : "\nmissing  sandbox"));
-  EXPECT_EQ(output.find("open no files, start no programs, make no sockets") != std::string::npos, has_seccomp);
+  EXPECT_EQ(output.find("cannot open files, start programs or create sockets") != std::string::npos,
+            has_seccomp);
 }
 
 TEST_F(UnderstudyRun, AViewerThatEndsWithoutADisplayIsToldOfIt) {
@@ -154,18 +155,18 @@ TEST_F(UnderstudyRun, ABadHostfileIsRefusedInOneLineBeforeAnythingStarts) {
     EXPECT_FALSE(fs::exists(mark));
     EXPECT_TRUE(nothing_is_left());
   };
-  refused("/nowhere/hosts", "cannot be read: No such file or directory; expected a host a line");
+  refused("/nowhere/hosts", "cannot be read: No such file or directory; expected one host per line");
   refused(folder_.string(), "cannot be read: Is a directory");
-  refused(file("# nobody\n"), "names no host");
-  refused(file("localhost slots=-2\n"), "the slots of 'localhost' are no number from 1 to 256");
-  refused(file("localhost\n\x01\x02\n"), "line 2: this is no name or address of a host");
+  refused(file("# nobody\n"), "lists no host");
+  refused(file("localhost slots=-2\n"), "the slots of 'localhost' must be a number from 1 to 256");
+  refused(file("localhost\n\x01\x02\n"), "line 2: not the name or address of a host");
   refused(file("192.0.2.7 slots=2\n"), "not this machine");
 }
 
 TEST_F(UnderstudyRun, NodesAreWantedByNumberOrByHosts) {
   const Result result = understudy("serve --socket " + (folder_ / "sock").string());
   EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.output, HasSubstr("Give -n N, or --hostfile FILE"));
+  EXPECT_THAT(result.output, HasSubstr("give -n N, or --hostfile FILE"));
 }
 
 TEST_F(UnderstudyRun, SaysNothingWhereItIsToBeQuiet) {
@@ -193,7 +194,7 @@ TEST_F(UnderstudyRun, SaysWhichViewerItCannotStart) {
   EXPECT_EQ(understudy("run -- /dev/null").status, 126);
   const Result none = understudy("run");
   EXPECT_EQ(none.status, 2);
-  EXPECT_THAT(none.output, HasSubstr("Put -- before its command"));
+  EXPECT_THAT(none.output, HasSubstr("put it after --"));
   EXPECT_TRUE(nothing_is_left());
 }
 
@@ -225,7 +226,7 @@ TEST_F(UnderstudyRun, RefusesAValueThatAnOptionCannotTake) {
 TEST_F(UnderstudyRun, SaysThatABackendIsForNodes) {
   const Result result = understudy("run --backend gl -- true");
   EXPECT_EQ(result.status, 0);
-  EXPECT_THAT(result.output, HasSubstr("--backend gl is for nodes of this run (-n N)"));
+  EXPECT_THAT(result.output, HasSubstr("--backend gl has no effect without nodes of this run"));
 }
 
 TEST_F(UnderstudyRun, ReportsAChainItDoesNotUnderstandBeforeTheViewerStarts) {
@@ -382,7 +383,7 @@ TEST_F(UnderstudyRun, StartsAnotherNodeGroupWhenARankIsKilledAndSaysSoInOneLine)
   }));
   EXPECT_EQ(run.end(), 0);
   const std::string text = run.said();
-  EXPECT_THAT(text, HasSubstr("starting 3 again (1 of 5), the viewer draws by itself meanwhile\n"));
+  EXPECT_THAT(text, HasSubstr("starting 3 again (attempt 1 of 5), meanwhile the viewer draws by itself\n"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << "one line on the loss, one at the end:\n" << text;
   EXPECT_TRUE(comes_true([&] { return run.ranks().empty(); }));
   EXPECT_TRUE(nothing_is_left());
@@ -404,8 +405,8 @@ TEST_F(UnderstudyRun, StartsAnotherNodeGroupWhenMpirunHangs) {
   EXPECT_TRUE(comes_true([&] { return run.viewer_runs() && run.ranks().size() == 2; })) << run.state();
   EXPECT_EQ(run.end(), 0);
   EXPECT_THAT(run.said(),
-              HasSubstr("the render nodes are gone (they did not start within 60 s); starting 2 again (1 of "
-                        "5), the viewer draws by itself meanwhile\n"));
+              HasSubstr("the render nodes are gone (they did not start within 60 s); starting 2 again "
+                        "(attempt 1 of 5), meanwhile the viewer draws by itself\n"));
   EXPECT_TRUE(nothing_is_left());
 }
 

@@ -51,12 +51,12 @@ TEST(UsageErrors, NameTheWordAndTheNearestRightOne) {
   const auto said_of = [](std::vector<std::string> words) { return Program().said_of(std::move(words)); };
   EXPECT_EQ(said_of({"rnu"}), "prog: there is no subcommand 'rnu'; did you mean 'run'?");
   EXPECT_EQ(said_of({"zebra"}), "prog: there is no subcommand 'zebra'");
-  EXPECT_EQ(said_of({}), "prog: what is to be done? Give one of run, render");
+  EXPECT_EQ(said_of({}), "prog: the subcommand is missing; give one of run, render");
   EXPECT_EQ(said_of({"run", "--ndoes", "2"}), "prog: run has no option --ndoes; did you mean '--nodes'?");
   EXPECT_EQ(said_of({"run", "--ndoes=2"}), "prog: run has no option --ndoes; did you mean '--nodes'?");
   EXPECT_EQ(said_of({"run", "--sort", "fist"}),
-            "prog: --sort: 'fist' is none of last, first; did you mean 'first'?");
-  EXPECT_EQ(said_of({"run", "--sort=middle"}), "prog: --sort: 'middle' is none of last, first");
+            "prog: --sort: 'fist' is not one of last, first; did you mean 'first'?");
+  EXPECT_EQ(said_of({"run", "--sort=middle"}), "prog: --sort: 'middle' is not one of last, first");
   EXPECT_EQ(said_of({"run", "viewer", "--fullscreen"}),
             "prog: put -- before the viewer's command: understudy run [options] -- viewer args…");
   EXPECT_EQ(said_of({"render", "a", "b"}), "prog: render does not take 'b'");

@@ -91,7 +91,7 @@ def nodes_of(view):
 def check(page, view):
     page.rests("the first image")
     images = {"first": page.save("1-first")}
-    assert re.fullmatch(r"\d+ × \d+ without loss: .* from hand to eye .*", page.text("frame")), page.text("frame")
+    assert re.fullmatch(r"\d+ × \d+ lossless: .* from input to image .*", page.text("frame")), page.text("frame")
     page.until(lambda: "error 0." in page.text("exactness"), "the error of the first image")
     assert len(page.driver.find_elements(By.CLASS_NAME, "rank")) == 2
     assert "secret" not in page.driver.current_url, "the secret stays in no address"

@@ -69,26 +69,26 @@ TEST(ViewMessage, EveryKeyArrives) {
 }
 
 TEST(ViewMessage, WhatCannotBeBelievedIsRefusedByItsKey) {
-  EXPECT_THAT(refusal("no JSON"), HasSubstr("no JSON object"));
-  EXPECT_THAT(refusal("[1]"), HasSubstr("no JSON object"));
+  EXPECT_THAT(refusal("no JSON"), HasSubstr("not a JSON object"));
+  EXPECT_THAT(refusal("[1]"), HasSubstr("not a JSON object"));
   EXPECT_THAT(refusal(R"({"size": [1e9, 100]})"), HasSubstr("'size' is not between 16 and 4096"));
-  EXPECT_THAT(refusal(R"({"size": [100]})"), HasSubstr("'size' is no list of 2"));
+  EXPECT_THAT(refusal(R"({"size": [100]})"), HasSubstr("'size' is not a list of 2"));
   EXPECT_THAT(refusal(R"({"step": 1e999})"), HasSubstr("JSON"));
   EXPECT_THAT(refusal(R"({"step": 0})"), HasSubstr("'step'"));
   EXPECT_THAT(refusal(R"({"zoom": {"by": -1, "at": [0, 0]}})"), HasSubstr("'zoom'"));
   EXPECT_THAT(refusal(R"({"zoom": 5})"), HasSubstr("'zoom' has no 'by'"));
   EXPECT_THAT(refusal(R"({"camera": {"azimuth": 1, "elevation": 91}})"), HasSubstr("'camera'"));
-  EXPECT_THAT(refusal(R"({"table": {"knots": []}})"), HasSubstr("no transfer function"));
-  EXPECT_THAT(refusal(R"({"table": {"knots": 3}})"), HasSubstr("no transfer function"));
+  EXPECT_THAT(refusal(R"({"table": {"knots": []}})"), HasSubstr("not a transfer function"));
+  EXPECT_THAT(refusal(R"({"table": {"knots": 3}})"), HasSubstr("not a transfer function"));
   EXPECT_THAT(refusal(R"({"surfaces": [{"at": 2, "colour": [0, 0, 0], "opacity": 1}]})"),
               HasSubstr("'surfaces'"));
-  EXPECT_THAT(refusal(R"({"run": "rm -rf /"})"), HasSubstr("no page sends"));
+  EXPECT_THAT(refusal(R"({"run": "rm -rf /"})"), HasSubstr("an unknown key"));
   std::string control_points = R"({"table": {"knots": [)";
   for (int i = 0; i < 257; ++i)
     control_points += std::string(i > 0 ? "," : "") + R"({"at":0.5,"colour":[0,0,0],"opacity":0})";
   EXPECT_THAT(refusal(control_points + "]}}"), HasSubstr("more than 256 control points"));
-  EXPECT_THAT(refusal(std::string(max_view_message_bytes + 1, ' ')), HasSubstr("over the limit"));
-  EXPECT_THAT(refusal(std::string(max_view_message_bytes, '[')), HasSubstr("no JSON object"));
+  EXPECT_THAT(refusal(std::string(max_view_message_bytes + 1, ' ')), HasSubstr("exceeds the limit"));
+  EXPECT_THAT(refusal(std::string(max_view_message_bytes, '[')), HasSubstr("not a JSON object"));
 }
 
 TEST(ViewMessage, DamagedMessagesAreRefusedOrCanBeDrawn) {

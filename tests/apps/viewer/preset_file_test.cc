@@ -29,21 +29,21 @@ TEST(PresetFile, SaysWhatIsWrong) {
     try {
       const PresetFile file(folder.write("t.json", text));
     } catch (const Error& error) {
-      EXPECT_THAT(error.what(), AllOf(HasSubstr("t.json"), HasSubstr("write {\"knots\""))) << text;
+      EXPECT_THAT(error.what(), AllOf(HasSubstr("t.json"), HasSubstr("expected {\"knots\""))) << text;
       return error.what();
     }
     return "nothing";
   };
   const std::string point = R"({"at": 0.5, "colour": [1, 1, 1], "opacity": 0})";
-  EXPECT_THAT(trouble("{"), HasSubstr("no transfer function"));
-  EXPECT_THAT(trouble("{}"), HasSubstr("no transfer function"));
+  EXPECT_THAT(trouble("{"), HasSubstr("not a transfer function"));
+  EXPECT_THAT(trouble("{}"), HasSubstr("not a transfer function"));
   EXPECT_THAT(trouble("{\"knots\": [" + point + "]}"), HasSubstr("1 control points are too few"));
   EXPECT_THAT(trouble("{\"knots\": [" + point + R"(, {"at": 0, "colour": [1, 1, 1], "opacity": 0}]})"),
               HasSubstr("control point 2 lies before"));
   EXPECT_THAT(trouble("{\"knots\": [" + point + R"(, {"at": 1, "colour": [1, 1, 1], "opacity": -1}]})"),
-              HasSubstr("control point 2 holds -1"));
+              HasSubstr("control point 2 has the value -1"));
   EXPECT_THAT(trouble("{\"knots\": [" + point + R"(, {"at": 1, "colour": [1, null, 1], "opacity": 1}]})"),
-              HasSubstr("no transfer function"));
+              HasSubstr("not a transfer function"));
   EXPECT_THROW(PresetFile(folder.file("nothing")), Error);
 }
 

@@ -300,7 +300,7 @@ TEST(Program, BadFilesEndWithStatusOneAndAMessage) {
               HasSubstr("expected 64 bytes, found 63"));
   EXPECT_THAT(message({folder.write("long.4x4x4", std::string(65, 'x'))}),
               HasSubstr("expected 64 bytes, found 65"));
-  EXPECT_THAT(message({folder.write("zero.0x4x4", std::string())}), HasSubstr("holds no voxels"));
+  EXPECT_THAT(message({folder.write("zero.0x4x4", std::string())}), HasSubstr("contains no voxels"));
   EXPECT_THAT(message({folder.write("wide.60000x1x1", std::string(60000, 'x'))}),
               HasSubstr("GL_MAX_3D_TEXTURE_SIZE"));
   EXPECT_THAT(message({ball_file(folder), "--screenshot", folder.file("no/such/folder.png")}),

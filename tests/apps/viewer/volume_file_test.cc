@@ -168,12 +168,12 @@ TEST(RawFile, SizesOutOfRangeAreRefusedBeforeReading) {
     hints.type = type;
     return message_of(path, hints);
   };
-  EXPECT_THAT(with_size({0, 3, 2}), HasSubstr("holds no voxels"));
-  EXPECT_THAT(with_size({4, -3, 2}), HasSubstr("holds no voxels"));
+  EXPECT_THAT(with_size({0, 3, 2}), HasSubstr("contains no voxels"));
+  EXPECT_THAT(with_size({4, -3, 2}), HasSubstr("contains no voxels"));
   EXPECT_THAT(with_size({max_edge_voxels, 1, 1}), HasSubstr("truncated"));
   EXPECT_THAT(with_size({max_edge_voxels + 1, 1, 1}), HasSubstr("limit of 65536"));
   EXPECT_THAT(with_size({max_edge_voxels, max_edge_voxels, 64}), HasSubstr("truncated"));
-  EXPECT_THAT(with_size({max_edge_voxels, max_edge_voxels, 65}), HasSubstr("over the limit"));
+  EXPECT_THAT(with_size({max_edge_voxels, max_edge_voxels, 65}), HasSubstr("above the limit"));
   EXPECT_THAT(with_size({std::numeric_limits<std::int64_t>::max(), 2, 2}), HasSubstr("limit of 65536"));
 }
 

@@ -30,8 +30,8 @@ export class Connection {
 
   open() {
     if (!window.isSecureContext) {
-      this.on.askForSecret('Over plain http from another machine a browser has no cryptography to prove that it ' +
-        `knows the secret. Run ssh -L ${location.port}:127.0.0.1:${location.port} ${location.hostname}, and open ` +
+      this.on.askForSecret('Browsers have no cryptography for pages that come over plain http from another machine, ' +
+        `so this page cannot prove that it knows the secret. Run ssh -L ${location.port}:127.0.0.1:${location.port} ${location.hostname}, and open ` +
         `http://localhost:${location.port}/ with the same #secret=… here.`);
       return;
     }

@@ -81,9 +81,9 @@ async function show(head, bytes) {
   const now = performance.now();
   rate.push(now);
   while (rate[0] < now - 1000) rate.shift();
-  const ms = head.ms, whole = head.still ? '' : `, ${rate.length} a second`;
-  element('frame').textContent = `${head.width} × ${head.height} ${head.format === 'png' ? 'without loss' : 'as JPEG'}: ` +
-    `${last_ms.toFixed(0)} ms from hand to eye (cast ${ms.render.toFixed(1)}, composite ${ms.composite.toFixed(1)}, ` +
+  const ms = head.ms, whole = head.still ? '' : `, ${rate.length} images per second`;
+  element('frame').textContent = `${head.width} × ${head.height} ${head.format === 'png' ? 'lossless' : 'as JPEG'}: ` +
+    `${last_ms.toFixed(0)} ms from input to image (cast ${ms.render.toFixed(1)}, composite ${ms.composite.toFixed(1)}, ` +
     `pack ${ms.pack.toFixed(1)})${whole}`;
   if (!head.still) element('exactness').textContent = '';
   document.documentElement.dataset.shown = `${head.sequence} ${head.still ? 'still' : 'moving'}`;
@@ -113,7 +113,7 @@ function hear(message) {
     showRanks();
     overlay();
     element('exactness').textContent = message.error === undefined ? '' :
-      `error ${message.error.toFixed(4)} at most, against the integral of ${message.rays} rays`;
+      `largest error ${message.error.toFixed(4)} against the integral, of ${message.rays} rays`;
     document.documentElement.dataset.figures = message.sequence;
   } else if (message.kind === 'impossible') {
     element('exactness').textContent = message.text;
@@ -365,7 +365,7 @@ const connection = new Connection({
   closed: () => {
     on_its_way = null;
     volume = null;
-    banner('The program is not there; it is tried again.', null);
+    banner('The connection to understudy view is lost; trying again.', null);
   },
   askForSecret: reason => {
     if (reason) element('ask-reason').textContent = reason;

@@ -37,7 +37,7 @@ constexpr FormerWord former_words[] = {
     {"link", "\\bLink(Lost|Cost|Reader|Wishes|Verdict|Plan|Traffic)\\b|\\blink_(version|patience|cost)",
      "communicator, TCP connection"},
     {"linked", "[Ll]inked_?[Ss]ervice|linked_loading", "remote render service"},
-    {"painter", "[Pp]ainter", "tile worker"},
+    {"painter", "[Pp]ainter", "tile worker", " volume/kd_tree.h ", "the name of an author"},
     {"polygons", "--polygons|UNDERSTUDY_POLYGONS", "--tiles"},
     {"strip", "spu/strips|[Ss]trip_?[Ss]cissor|\\bstrips\\b", "tile, image partition",
      " volume/file/slices/tiff_image.h volume/file/slices/tiff_image.cc tests/volume/file/tiff_test.cc ",

@@ -127,7 +127,8 @@ TEST(ZarrArray, BooleansAreReadAsBytesAndHalvesAsFloats) {
       for (int z = 0; z < chunk_size[2]; ++z)
         for (int y = 0; y < chunk_size[1]; ++y)
           for (int x = 0; x < chunk_size[0]; ++x)
-            filled[std::size_t((z * array_size[1] + y) * array_size[0] + x)] = std::byte{1};
+            filled[std::size_t(z * array_size[1] + y) * std::size_t(array_size[0]) + std::size_t(x)] =
+                std::byte{1};
       EXPECT_EQ(read_box(*mask, whole(*mask)), filled);
     }
 }

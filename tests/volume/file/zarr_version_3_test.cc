@@ -172,7 +172,7 @@ Bytes without_missing_chunk(const Bytes& scalars, std::size_t bytes) {
   Bytes kept = scalars;
   for (int z = chunk_size[2]; z < 2 * chunk_size[2]; ++z)
     for (int y = chunk_size[1]; y < 2 * chunk_size[1]; ++y) {
-      const std::size_t row = std::size_t((z * array_size[1] + y) * array_size[0]);
+      const std::size_t row = std::size_t(z * array_size[1] + y) * std::size_t(array_size[0]);
       std::fill_n(kept.begin() + std::ptrdiff_t((row + std::size_t(chunk_size[0])) * bytes),
                   std::size_t(chunk_size[0]) * bytes, std::byte{});
     }
@@ -376,7 +376,7 @@ TEST(ZarrVersion3, TranspositionsThatAreNotTheirOwnInverse) {
   const TemporaryFolder folder;
   Bytes scalars(24), turned, turned_twice;
   for (int i = 0; i < 24; ++i) scalars[std::size_t(i)] = std::byte(i);
-  const auto at = [&](int z, int y, int x) { return scalars[std::size_t((z * 3 + y) * 4 + x)]; };
+  const auto at = [&](int z, int y, int x) { return scalars[std::size_t(z * 3 + y) * 4 + std::size_t(x)]; };
   // [1, 2, 0]: y, x, z, the slowest first; then [0, 2, 1]: y, z, x.
   for (int y = 0; y < 3; ++y)
     for (int x = 0; x < 4; ++x)

@@ -14,7 +14,7 @@ struct Optimizations {
   /// Under a maximum, samples in blocks that show nothing larger than what the ray has seen: to rounding.
   bool dominated_samples = true;
   /// Pixels that a rank's blocks cannot touch, or that no sample has reached, between ranks; and ranks without
-  /// any. Other sums are made of the same images: to 2e-6.
+  /// any. Other sums are made of the same images: to 4e-6.
   bool footprints = true;
 
   bool operator==(const Optimizations&) const = default;

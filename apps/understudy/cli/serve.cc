@@ -153,8 +153,9 @@ int serve(const ServeArguments& arguments) {
     nodes.wait_and_serve(inbox.descriptor());
     if (announced || !nodes.ready()) continue;
     announced = true;
-    fmt::print("understudy: {} nodes at {}; use them with: understudy run --connect {} -- viewer args…\n",
-               nodes.ranks(), socket.string(), socket.string());
+    fmt::print("understudy: {0} {1} at {2}; use {3} with: understudy run --connect {2} -- viewer args…\n",
+               nodes.ranks(), nodes.ranks() == 1 ? "node" : "nodes", socket.string(),
+               nodes.ranks() == 1 ? "it" : "them");
     if (frontends.listener.process)
       fmt::print(
           "understudy: also at {0}; use them with: understudy run {1}--connect {0} {2} -- viewer args…\n",

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the samples of a ray become the colour of its pixel.
+// How the samples of a ray are combined into the colour of its pixel.
 #pragma once
 
 #include <cstdint>
 
 namespace understudy::volume {
 
-/// How a ray's samples become a pixel. First-hit: the first sample whose opacity is above 0 alone, opaque, in
-/// its plain colour (premultiplied colour over opacity, kept within what a float holds); images of it are
-/// composed by `over`, front to back.
+/// How the samples of a ray are combined into a pixel. first_hit: the first sample with opacity above 0,
+/// opaque, in its plain colour (premultiplied colour over opacity, clamped to the range of a float); such
+/// images are composited by `over`, front to back.
 enum class Operator : std::uint8_t { over, max, min, add, first_hit };
 
 }  // namespace understudy::volume

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the parts of a volume cost, in any unit that adds up (samples, milliseconds, blocks that show
-// something): one number for each cube of so many cells.
+// Costs of the parts of a volume, in any additive unit (samples, milliseconds, visible blocks): one value per
+// cube of cells.
 #pragma once
 
 #include <array>
@@ -12,11 +12,11 @@
 
 namespace understudy::volume {
 
-/// Values of cubes that tile the lattice; sums over boxes of them are CostSums.
+/// One value per cube; the cubes tile the lattice. CostSums sums the values over boxes.
 class BlockCosts {
  public:
-  /// Of the cells `lattice`, in cubes of `edge` cells, a multiple of a block's (those at the upper rim may be
-  /// smaller); all cost nothing yet. Throws std::invalid_argument.
+  /// For the cells of `lattice`, in cubes of `edge` cells, a multiple of block_cells (cubes at the upper
+  /// boundary may be smaller). All costs start at 0. Throws std::invalid_argument.
   BlockCosts(const TexelBox& lattice, int edge);
 
   const TexelBox& lattice() const { return lattice_; }
@@ -31,7 +31,7 @@ class BlockCosts {
            std::size_t(cube[0]);
   }
 
-  /// The cubes whose lowest cell lies in `cells`: boxes that tile the lattice divide the cubes among them.
+  /// The cubes whose lowest cell lies in `cells`. Boxes that tile the lattice partition the cubes.
   TexelBox cubes_of(const TexelBox& cells) const;
 
  private:
@@ -41,18 +41,18 @@ class BlockCosts {
   std::vector<double> values_;
 };
 
-/// Sums over boxes, each in constant time. (Crow 1984, with one dimension more.) Exact for integers.
+/// Sums over boxes, in constant time each (summed-area table, Crow 1984, in 3D). Exact for integers.
 class CostSums {
  public:
   explicit CostSums(const BlockCosts& costs);
 
   const BlockCosts& costs() const { return *costs_; }
-  /// Of the cubes whose lowest cell lies in `cells`.
+  /// Sum over the cubes whose lowest cell lies in `cells`.
   double within(const TexelBox& cells) const;
 
  private:
   const BlockCosts* costs_;
-  std::vector<double> sums_;  // of all cubes below, with one more layer of zeros at the low sides
+  std::vector<double> sums_;  // prefix sums, exclusive, with one layer of zeros at the low sides
 };
 
 }  // namespace understudy::volume

@@ -37,7 +37,7 @@ TexelBox BrickGrid::cells(std::size_t brick) const {
 
 std::vector<std::size_t> BrickGrid::in_visibility_order(const VolumeDescription& volume,
                                                         const RenderRequest& request) const {
-  // Whatever face a ray crosses, the sum of what its brick counts on the three axes rises by one.
+  // Whichever face a ray crosses, the sum of its brick's three counts increases by one.
   const VisibilityOrder visibility(request);
   std::array<std::vector<int>, 3> along;
   for (int axis = 0; axis < 3; ++axis) {

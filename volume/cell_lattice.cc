@@ -62,7 +62,7 @@ Box texture_box(const VolumeDescription& volume, const TexelBox& cells) {
   const CellLattice lattice = cell_lattice(volume);
   Box box;
   for (int axis = 0; axis < 3; ++axis) {
-    // Positions are floats in lattice coordinates; their error grows with the lattice.
+    // Positions are floats in lattice coordinates; their error grows with the size of the lattice.
     const double slack = std::max(1e-3, 1e-6 * lattice.cells[axis]);
     const int rim = lattice.origin[axis] + lattice.cells[axis];
     const auto texture = [&](double u) { return (u + 0.5) / volume.size[axis]; };

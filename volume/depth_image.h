@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The depth of the opaque geometry that the application has drawn before its volume.
+// The depth of the opaque geometry that the application has drawn before the volume.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace understudy::volume {
 
-/// Window depth in [0,1] of the opaque geometry already drawn: samples that are not nearer are hidden.
+/// Window depth in [0,1] of the opaque geometry already drawn. Samples that are not nearer are hidden.
 struct DepthImage {
   Rect rect;
   std::vector<float> depth;  ///< rows bottom up
-  bool or_equal = false;     ///< GL_LEQUAL instead of GL_LESS
+  bool or_equal = false;     ///< depth test: true is GL_LEQUAL, false is GL_LESS
   bool operator==(const DepthImage&) const = default;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is known of a volume before its texels: size, type, and which of them travel.
+// The properties of a volume: size, type, and the range of texels that is sent to the nodes.
 #pragma once
 
 #include <array>
@@ -17,19 +17,19 @@ namespace understudy::volume {
 /// Each axis of `size` has 1 to max_axis_texels texels (volume/cell_lattice.h).
 struct VolumeDescription {
   VolumeId id = 0;
-  std::uint64_t version = 0;  ///< grows whenever the texels change
+  std::uint64_t version = 0;  ///< increases whenever the texels change
   std::array<int, 3> size{};  ///< of the whole texture, in texels
   TexelType type = TexelType::u8;
   std::array<Wrap, 3> wrap{};
   Rgba border{};  ///< the texture's border colour; scalar fields use the first component
-  /// The texels that travel: the part of the texture that the application shows, with one texel around it for
-  /// the filter. What lies outside (power-of-two padding) is never sent and never sampled.
+  /// The texels that are sent: the part of the texture that the application shows, plus one texel around it for
+  /// the filter. Texels outside it (power-of-two padding) are never sent and never sampled.
   TexelBox stored;
-  /// So many cells around its own each node holds beside them: for the second samples of segments and segments,
+  /// Cells that each node holds around its own cells: for the second samples of slice segments, for segments,
   /// and for gradients (see ghost_layer_needed()).
   int ghost_layer = 0;
-  /// The cells that are shown, of the lattice (volume/cell_lattice.h); without it all. Images of parts that
-  /// tile the lattice compose to that of the whole, as those of ranks do.
+  /// The cells of the lattice that are shown (volume/cell_lattice.h); unset: all. Images of parts that tile the
+  /// lattice composite to the image of the whole, like those of ranks.
   std::optional<TexelBox> part;
 
   bool operator==(const VolumeDescription&) const = default;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fog, or depth cueing: what the way from the eye does to the colour of a sample, without a word about its
-// opacity. A sample of colour c and opacity a, premultiplied, shows
+// Fog (depth cueing): changes the colour of a sample with its distance from the eye, but not its opacity. A
+// sample of premultiplied colour c and opacity a at point t of texture space contributes
 //
 //     weight(u) c + a added(u),   u = normal . t + offset
 //
-// at the point t of texture space. Linear, exponential and clamped fog of any colour are all of this form.
+// Linear, exponential and clamped fog of any colour have this form.
 #pragma once
 
 #include <array>
@@ -14,12 +14,12 @@
 
 namespace understudy::volume {
 
-/// `normal` and `offset` make u of a point of texture space; see above.
+/// `normal` and `offset` map a point of texture space to u; see above.
 struct Fog {
   std::array<double, 3> normal{};
   double offset = 0;
-  /// N >= 2 entries at u = i / (N - 1), linear between entries and constant outside [0, 1]: added colour in the
-  /// first three components, weight in the last.
+  /// N >= 2 entries at u = i / (N - 1), linear between entries and constant outside [0, 1]. The first three
+  /// components are the added colour, the last is the weight.
   std::vector<Rgba> entries;
 
   bool operator==(const Fog&) const = default;

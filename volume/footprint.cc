@@ -16,7 +16,7 @@ namespace {
 
 using Polygon = std::vector<Vec4>;  // in clip space
 
-/// Sutherland-Hodgman: the part of `polygon` where `distance` is not negative.
+/// Sutherland-Hodgman clipping: the part of `polygon` where `distance` is not negative.
 template <typename Distance>
 Polygon clipped(const Polygon& polygon, Distance distance) {
   Polygon kept;
@@ -34,8 +34,8 @@ Polygon clipped(const Polygon& polygon, Distance distance) {
   return kept;
 }
 
-/// First pixel whose centre may lie right of `edge`, and one past the last whose centre may lie left of it;
-/// kept within the window before the conversion to int.
+/// First pixel whose centre may lie to the right of `edge`, and one past the last whose centre may lie to its
+/// left; clamped to the window before the conversion to int.
 int first_pixel(double edge, int low, int high) {
   return int(std::clamp(std::floor(edge - 0.5), double(low), double(high)));
 }
@@ -55,8 +55,8 @@ Rect footprint(const RenderRequest& request, const Box& box) {
     if (!(low[axis] <= high[axis])) return {};
   }
 
-  // The visible part of the box is cut out by the near and far plane. These meet outside of what can be seen,
-  // so each of its corners lies on a face of the box, and the clipped faces hold the whole outline.
+  // The near and far planes clip the box to its visible part. They intersect only outside the view frustum, so
+  // every corner of that part lies on a face of the box, and the clipped faces contain its whole outline.
   double x_low = std::numeric_limits<double>::infinity(), x_high = -x_low, y_low = x_low, y_high = -x_low;
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side) {
@@ -73,7 +73,7 @@ Rect footprint(const RenderRequest& request, const Box& box) {
       face = clipped(face, [](const Vec4& c) { return c[3] - c[2]; });
       for (const Vec4& c : face) {
         const double largest = std::max({std::abs(c[0]), std::abs(c[1]), std::abs(c[2])});
-        if (!(c[3] > 1e-12 * largest)) return window;  // reaches the eye: anything may be covered
+        if (!(c[3] > 1e-12 * largest)) return window;  // reaches the eye: may cover any pixel
         const double x = c[0] / c[3], y = c[1] / c[3];
         x_low = std::min(x_low, x);
         x_high = std::max(x_high, x);
@@ -95,7 +95,7 @@ Rect footprint(const RenderRequest& request, const Box& box) {
 Rect footprint(const RenderRequest& request, const VolumeDescription& volume, const TexelBox& cells) {
   for (int axis = 0; axis < 3; ++axis)
     if (cells.low[axis] >= cells.high[axis]) return {};
-  // A ray's first or last sample may lie beyond the region, in cells that the ray does not cross.
+  // A ray's first or last sample may lie outside the region, in cells that the ray does not cross.
   if (request.steps && request.steps->any_beyond_end()) return footprint(request, request.region);
   return footprint(request, texture_box(volume, cells));
 }

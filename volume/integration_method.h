@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the way between two samples of a ray counts.
+// How the interval between two samples of a ray is integrated.
 #pragma once
 
 #include <cstdint>
 
 namespace understudy::volume {
 
-/// What a transfer function's samples stand for. Pre-integrated: the way between two samples is a segment, on
-/// which the field is taken to change evenly from one to the other; of a segment of one whole step is seen what
-/// a medium would show of which an even field shows the transfer function's entries. Segments cover a ray's
-/// whole way through the region (at most one step before the first sample) and are cut where clip planes and
-/// opaque geometry cut the ray; a shorter segment has a power of the whole one's transparency.
+/// What the samples of a transfer function represent. Pre-integrated: the interval between two samples is a
+/// segment on which the field varies linearly from one to the other. In the underlying medium, a constant field
+/// shows the entries of the transfer function over one whole step. Segments cover the whole path of a ray
+/// through the region (beginning at most one step before the first sample) and are clipped at clip planes and
+/// opaque geometry. The transparency of a shorter segment is a power of that of a whole one.
 ///
-/// Adaptive: every whole step is the longest that is taken. It is divided into 1, 2, 4, 8 or 16 equal parts, as
-/// the transfer function's bends near the value in its middle ask for, and a sample is taken in the middle of
-/// each, which has that power of the transfer function's transparency. Steps cover the ray as segments do, and
-/// are cut as they are.
+/// Adaptive: a whole step is the longest that is taken. Depending on how sharply the transfer function bends
+/// near the value in its middle, a step is divided into 1, 2, 4, 8 or 16 equal parts with one sample in the
+/// middle of each. The transparency of a part is the corresponding power of the transfer function's. Steps
+/// cover and are clipped like segments.
 enum class Method : std::uint8_t { post_classified, pre_integrated, adaptive };
 
 }  // namespace understudy::volume

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A volume's cells in one convex box per rank, as a partition divides them, and the order in which the boxes
-// cover each other. (Bentley 1975; for sort-last volume rendering Ma, Painter, Hansen, Krogh 1994.)
+// Divides the cells of a volume into one convex box per rank, according to a partition, and orders the boxes by
+// visibility. (Bentley 1975; for sort-last volume rendering Ma, Painter, Hansen, Krogh 1994.)
 #pragma once
 
 #include <array>
@@ -16,12 +16,12 @@ class VisibilityOrder;
 struct RenderRequest;
 struct VolumeDescription;
 
-/// A partition with the boxes that it makes, and their visibility order for a request.
+/// A partition with the resulting boxes, and their visibility order for a request.
 class KdTree {
  public:
   /// Throws std::invalid_argument when `partition` does not divide the cell lattice of `volume`.
   KdTree(const VolumeDescription& volume, Partition partition);
-  /// By blocks, among `ranks` >= 1. With more ranks than cells some boxes are empty. Throws
+  /// Partitions by blocks among `ranks` >= 1. With more ranks than cells some boxes are empty. Throws
   /// std::invalid_argument.
   KdTree(const VolumeDescription& volume, int ranks);
 
@@ -29,13 +29,13 @@ class KdTree {
 
   int ranks() const { return int(boxes_.size()); }
 
-  /// The cells of `rank`, half-open. Boxes of all ranks tile the lattice.
+  /// The cells of `rank`, half-open. The boxes of all ranks tile the shown cells.
   const TexelBox& box(int rank) const { return boxes_[std::size_t(rank)]; }
 
-  /// All ranks, in the order in which a request's samples meet their boxes: on every ray, samples in a box
-  /// named earlier have smaller plane indices. Follows the planes, so that it also holds for reversed depth.
-  /// Exact for any camera while the planes keep one order over the image; they do not when the eye lies
-  /// between slices that do not face it, where the application's own order is wrong on one side. Throws
+  /// All ranks in visibility order: on every ray, the samples in a rank's box have smaller plane indices than
+  /// those in boxes later in the list. The order follows the planes, so it also holds for reversed depth. Exact
+  /// for any camera as long as the planes have the same order over the whole image. They do not when the eye
+  /// lies between slices that do not face it; there, the application's own order is wrong on one side. Throws
   /// std::invalid_argument when the matrix is singular.
   std::vector<int> visibility_order(const RenderRequest& request) const;
 

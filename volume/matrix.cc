@@ -28,8 +28,9 @@ Vec4 transform(const Matrix4& m, const Vec4& v) {
 
 namespace {
 
-/// The four elements from `first` on, `stride` apart: a row or a column. Scales them by the power of two that
-/// brings the largest near one, which is free of rounding, and notes it in `scale`. False where there is none.
+/// Scales the four elements from `first` on, `stride` apart (a row or a column), by the power of two that
+/// brings the largest near one, which is exact, and multiplies `scale` by it. Returns false if no such power
+/// exists.
 bool balance(Matrix4& a, int first, int stride, double& scale) {
   double largest = 0;
   for (int k = 0; k < 4; ++k) largest = std::max(largest, std::abs(a[first + stride * k]));
@@ -47,7 +48,7 @@ struct Pivot {
   double size = 0;
 };
 
-/// The largest element of the rows from `step` on, in columns that have had no pivot yet.
+/// The largest element of the rows from `step` on, in columns without a pivot.
 Pivot largest_pivot(const Matrix4& a, int step, const std::array<bool, 4>& used) {
   Pivot best{step, -1, 0};
   for (int i = step; i < 4; ++i)
@@ -56,7 +57,7 @@ Pivot largest_pivot(const Matrix4& a, int step, const std::array<bool, 4>& used)
   return best;
 }
 
-/// One step of Gauss-Jordan on [a | right], with this pivot brought to row `step`.
+/// One step of Gauss-Jordan elimination on [a | right]; moves the pivot to row `step` first.
 void eliminate(Matrix4& a, Matrix4& right, int step, const Pivot& pivot) {
   for (int k = 0; k < 4; ++k) {
     std::swap(a[4 * pivot.row + k], a[4 * step + k]);
@@ -80,7 +81,7 @@ void eliminate(Matrix4& a, Matrix4& right, int step, const Pivot& pivot) {
 }  // namespace
 
 std::optional<Matrix4> inverse(const Matrix4& m) {
-  // m = R a C, with rows and columns of `a` near one.
+  // m = R a C, where the largest elements of the rows and columns of `a` are near one.
   std::array<double, 4> row_scale{1, 1, 1, 1}, column_scale{1, 1, 1, 1};
   Matrix4 a = m;
   for (int sweep = 0; sweep < 4; ++sweep) {
@@ -90,7 +91,7 @@ std::optional<Matrix4> inverse(const Matrix4& m) {
       if (!balance(a, i, 4, column_scale[i])) return std::nullopt;
   }
 
-  // Gauss-Jordan with full pivoting.
+  // Gauss-Jordan elimination with full pivoting.
   constexpr double smallest_pivot = 1e-14;
   Matrix4 right = identity();
   std::array<int, 4> pivot_column{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The little double-precision algebra that the modules share: row-major 4x4 matrices on column vectors, and
-// vectors of three. Planes are kept as in texture_space.h (HalfSpace: normal . p + offset >= 0).
+// Double-precision linear algebra shared by the modules: row-major 4x4 matrices on column vectors, and vectors
+// of three. Planes are represented as in texture_space.h (HalfSpace: normal . p + offset >= 0).
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@ namespace understudy::volume {
 /// A homogeneous point, or the coefficients of a plane.
 using Vec4 = std::array<double, 4>;
 
-/// Leaves every point where it is.
+/// The identity matrix.
 constexpr Matrix4 identity() {
   return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 }
@@ -34,10 +34,10 @@ constexpr Vec3 subtract(const Vec3& a, const Vec3& b) {
 constexpr Vec3 scale(const Vec3& a, double s) {
   return {a[0] * s, a[1] * s, a[2] * s};
 }
-/// Euclidean.
+/// Euclidean length.
 double length(const Vec3& a);
 
-/// The product that applies `b` first, then `a`.
+/// The product a b: applies `b` first, then `a`.
 Matrix4 multiply(const Matrix4& a, const Matrix4& b);
 
 /// The product m v, not divided by its last component.
@@ -49,12 +49,12 @@ inline Vec4 transform_point(const Matrix4& m, const Vec3& p) {
 }
 
 /// Empty when `m` holds a value that is not finite, or is singular to working precision: when a pivot falls
-/// under 1e-14 of its column after rows and columns were scaled to a largest entry of one. Scaling first
-/// keeps honest extremes (anisotropy 1e6, near : far = 1e-12) apart from singular matrices.
+/// below 1e-14 after rows and columns were scaled to a largest entry near one. Scaling first distinguishes
+/// valid extremes (anisotropy 1e6, near : far = 1e-12) from singular matrices.
 std::optional<Matrix4> inverse(const Matrix4& m);
 
-/// The half-space that keeps the image of p under `forward` exactly when `plane` keeps p; wants the inverse
-/// of the affine map `forward`.
+/// The half-space that contains the image of p under `forward` exactly when `plane` contains p. Takes the
+/// inverse of the affine map `forward`.
 HalfSpace transform_half_space(const Matrix4& inverse_of_forward, const HalfSpace& plane);
 
 }  // namespace understudy::volume

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What ranks nearer to the eye have drawn already, tile by tile, while an image is still being drawn: tiles in
-// which all their pixels are opaque hide what lies behind them, so that others need neither draw it nor send
-// it.
+// Occlusion between ranks while an image is being drawn, tile by tile: tiles that a rank nearer to the eye has
+// drawn completely opaque hide those behind them, so that other ranks need neither draw nor send them.
 #pragma once
 
 namespace understudy::volume {
@@ -10,20 +9,20 @@ struct Image;
 struct Rect;
 struct RenderRequest;
 
-/// Pixels, along both axes; tiles begin at multiples of it, in window coordinates.
+/// Tile edge in pixels, along both axes; tiles begin at multiples of it, in window coordinates.
 constexpr int occlusion_tile = 32;
 
-/// Asked and told by all threads that draw.
+/// Queried and updated by all drawing threads.
 class Occlusion {
  public:
   virtual ~Occlusion() = default;
 
-  /// Whether none of these pixels will be seen. What is visible now may be hidden later.
+  /// Whether none of these pixels will be visible. Pixels that are visible now may be hidden later.
   virtual bool hides(const Rect& pixels) = 0;
-  /// These pixels are drawn, and opaque. Tiles of the window that lie in them as a whole now hide others.
+  /// Reports that these pixels are drawn and opaque. Window tiles that lie completely in them now hide others.
   virtual void cover(const Rect& pixels) = 0;
-  /// Whether to draw the last tiles first: of two ranks, one behind the other and equally fast, one would
-  /// always be told too late if both began at the same end.
+  /// Whether to draw the last tiles first: if two equally fast ranks, one behind the other, began at the same
+  /// end, one would always learn of occlusion too late.
   virtual bool from_the_end() const = 0;
 
  protected:
@@ -34,17 +33,17 @@ class Occlusion {
   Occlusion& operator=(Occlusion&&) = default;
 };
 
-/// Whether images of such a request can hide each other, and may be left out for that.
+/// Whether images of such a request can hide each other, and hidden tiles may be skipped.
 bool can_occlude(const RenderRequest& request);
 
-/// Whether every pixel of `rect`, which lies inside `image`, lets less through than the request's rays go on
-/// for.
+/// Whether the transparency of every pixel of `rect`, which lies inside `image`, is below the request's
+/// termination threshold.
 bool is_opaque(const Image& image, const Rect& rect, const RenderRequest& request);
 
-/// Tells `occlusion` of every tile of an image that has been drawn as a whole.
+/// Reports every completely drawn, opaque tile of an image to `occlusion`.
 void cover_opaque_tiles(const Image& image, const RenderRequest& request, Occlusion& occlusion);
 
-/// The tiles that `rect` touches, in units of tiles.
+/// The tiles that `rect` overlaps, in units of tiles.
 Rect tiles_touched(const Rect& rect);
 
 }  // namespace understudy::volume

@@ -9,14 +9,14 @@
 
 namespace understudy::volume {
 
-/// `function` for samples `step` of its own distances apart, step > 0:
+/// Corrects `function` for samples whose distance is `step` times its own, step > 0:
 ///
 ///     alpha(step) = 1 - (1 - alpha)^step,   colour(step) = colour alpha(step) / alpha
 ///
-/// and colour(step) = colour step where alpha is 0. Opacities above 1 count as 1. Between the entries of
-/// `function` opacity is linear for its own distance, and for another one it is not: there are as many more
-/// entries as fit into `most_entries`, at equal distances, so that what lies between them is nearly linear. At
-/// step 1 the function stays as it is.
+/// and colour(step) = step colour where alpha is 0. Opacities above 1 count as 1. The corrected opacity is not
+/// linear between the entries of `function`, so entries are inserted at equal distances, as many as
+/// `most_entries` permits, to make it nearly linear between entries. For step 1, `function` is returned
+/// unchanged.
 TransferFunction opacity_corrected(const TransferFunction& function, double step, std::size_t most_entries);
 
 }  // namespace understudy::volume

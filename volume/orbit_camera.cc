@@ -16,7 +16,7 @@ namespace understudy::volume {
 
 namespace {
 
-constexpr double nearest = 1e-3;  // of the near plane, in half diagonals
+constexpr double nearest = 1e-3;  // distance of the near plane, in half diagonals
 constexpr double farthest_eye = 1e6;
 
 Matrix4 perspective(int width, int height, double near, double far) {
@@ -62,7 +62,7 @@ RenderRequest orbit_request(const VolumeDescription& volume, const Vec3& spacing
     to_world[4 * k + 3] = -extent[k] / radius / 2;
   }
 
-  // The directions come from the angles and not from an up vector: nothing is special at the poles.
+  // Derives the axes from the angles instead of an up vector: no singularity at the poles.
   const double azimuth = camera.azimuth * std::numbers::pi / 180, roll = camera.roll * std::numbers::pi / 180;
   const Vec3 level{std::cos(azimuth), std::sin(azimuth), 0};
   const Vec3 back = eye_direction(camera);

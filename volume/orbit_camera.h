@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera on a sphere around the volume that looks at its middle, z up unless it rolls.
+// A camera on a sphere around the volume, looking at its centre; z points up unless the camera rolls.
 #pragma once
 
 #include "volume/texture_space.h"
@@ -9,25 +9,26 @@ namespace understudy::volume {
 struct RenderRequest;
 struct VolumeDescription;
 
-/// Where the eye is, seen from the volume's middle.
+/// Position of the eye relative to the volume's centre.
 struct OrbitCamera {
   double azimuth = 30;    ///< degrees; 0 looks along +y, 90 along -x
-  double elevation = 20;  ///< degrees above the plane of x and y
+  double elevation = 20;  ///< degrees above the xy plane
   double distance = 4;    ///< in half diagonals of the volume; below 1 the eye may be inside
-  double roll = 0;        ///< degrees that the camera turns about its line of sight; 180: z is down
+  double roll = 0;        ///< degrees of rotation about the view direction; 180: z points down
 
   bool operator==(const OrbitCamera&) const = default;
 };
 
-/// Degrees, of the shorter side.
+/// Field of view of the shorter side, in degrees.
 constexpr double orbit_field_of_view = 30;
 
-/// From the volume's middle to the eye, of length 1, in the volume's axes.
+/// Unit vector from the volume's centre to the eye, in the volume's axes.
 Vec3 eye_direction(const OrbitCamera& camera);
 
-/// An image of `width` x `height` pixels of a volume of this size and spacing: one sample every `step` of the
-/// smallest spacing along each ray, the first half a step behind where it enters. The classification is left to
-/// the caller. Throws std::invalid_argument for a camera, an image or a step that makes no sense.
+/// A request for an image of `width` x `height` pixels of a volume of this size and spacing, with one sample
+/// every `step` times the smallest spacing along each ray, the first half a step after its entry. The
+/// classification is left to the caller. Throws std::invalid_argument for an invalid camera, image size or
+/// step.
 RenderRequest orbit_request(const VolumeDescription& volume, const Vec3& spacing, const OrbitCamera& camera,
                             int width, int height, double step);
 

@@ -26,8 +26,8 @@ int longest_axis(const TexelBox& cells) {
   return axis;
 }
 
-/// Where to cut for `left` of `ranks`: on the block face nearest to the fair share, or between any two cells
-/// when no block face lies inside; a single cell is not cut.
+/// Where to cut for `left` of `ranks`: on the block face nearest to the proportional share, or between any two
+/// cells when no block face lies inside; a single cell is not cut.
 int even_cut(const TexelBox& lattice, const TexelBox& cells, int axis, int left, int ranks) {
   constexpr int block = block_cells;
   const int length = extent(cells, axis);
@@ -41,7 +41,7 @@ int even_cut(const TexelBox& lattice, const TexelBox& cells, int axis, int left,
   return cells.low[axis] + std::clamp(nearest, lowest, highest);
 }
 
-/// What is to be cut for `ranks` ranks, and where.
+/// A cut of a box, and the number of ranks on its low side.
 struct Cut {
   int axis = 0;
   int at = 0;
@@ -54,7 +54,7 @@ void check_ranks(int ranks) {
         fmt::format("a volume cannot be divided among {} ranks (1 to {} are possible)", ranks, max_ranks));
 }
 
-/// Cuts until every rank has its box; `choose` says how, for a box and its number of ranks.
+/// Cuts until every rank has its box; `choose` returns the cut for a box and its number of ranks.
 template <class Choose>
 int divide(Partition& partition, const TexelBox& cells, int first_rank, int ranks, const Choose& choose) {
   if (ranks == 1) return ~first_rank;
@@ -157,7 +157,7 @@ std::array<int, 3> factors(const VolumeDescription& volume, int ranks) {
     for (int y = 1; y <= ranks / x; ++y) {
       if (ranks / x % y != 0) continue;
       const std::array<int, 3> candidate{x, y, ranks / x / y};
-      double faces = 0;  // in faces of the volume, weighed by their areas
+      double faces = 0;  // in faces of the volume, weighted by their areas
       for (int k = 0; k < 3; ++k) faces += double(candidate[k] - 1) / extent(shown, k);
       if (faces < least) {
         least = faces;
@@ -171,7 +171,7 @@ std::array<int, 3> factors(const VolumeDescription& volume, int ranks) {
 Partition by_factors(const VolumeDescription& volume, int ranks) {
   const TexelBox lattice = cell_lattice(volume).box();
   const std::array<int, 3> parts = factors(volume, ranks);
-  // x is cut first, then y; so the rank's number within a segment of x says how far y has been cut.
+  // x is cut first, then y; so a box's number of ranks tells how far it has been cut.
   const int slice_segment = parts[1] * parts[2];
   return divided(shown_cells(volume), ranks, [&](const TexelBox& cells, int, int here) {
     const int axis = here > slice_segment ? 0 : here > parts[2] ? 1 : 2;
@@ -192,7 +192,7 @@ std::optional<int> fair_cut(const CostSums& costs, const TexelBox& cells, int ax
     low.high[axis] = origin + face * edge;
     return costs.within(low);
   };
-  // Costs are not negative, so the low side's rise with the face.
+  // Costs are not negative, so the cost of the low side increases with the face.
   int below = first, above = last;
   while (below < above) {
     const int middle = below + (above - below) / 2;
@@ -216,7 +216,7 @@ Partition by_cost(int ranks, const CostSums& costs) {
   return divided(lattice, ranks, [&](const TexelBox& cells, int, int here) {
     const int left = here / 2;
     const double all = costs.within(cells);
-    // How much the dearer side has over its share, at best.
+    // For each axis, the relative excess of the costlier side over its share, for the best cut.
     std::array<double, 3> excess{};
     std::array<int, 3> at{};
     for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a pixel would show if its samples were taken ever more densely (volume/reference/pixel_integral.h).
+// The limit of a pixel for ever denser samples (volume/reference/pixel_integral.h).
 #pragma once
 
 #include <array>

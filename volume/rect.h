@@ -7,7 +7,7 @@
 
 namespace understudy::volume {
 
-/// Half-open rectangle of pixels in window coordinates: x to the right, y up, as in glViewport.
+/// A pixel in window coordinates: x to the right, y up, as in glViewport.
 struct Pixel {
   int x = 0;
   int y = 0;
@@ -26,14 +26,14 @@ struct Rect {
   bool operator==(const Rect&) const = default;
 };
 
-/// Empty, at (0, 0), where they share no pixel.
+/// Empty, at (0, 0), if they share no pixel.
 inline Rect intersection(const Rect& a, const Rect& b) {
   const int x0 = std::max(a.x, b.x), x1 = std::min(a.x + a.width, b.x + b.width);
   const int y0 = std::max(a.y, b.y), y1 = std::min(a.y + a.height, b.y + b.height);
   return x1 > x0 && y1 > y0 ? Rect{x0, y0, x1 - x0, y1 - y0} : Rect{};
 }
 
-/// Smallest rectangle that holds both; an empty one adds nothing.
+/// Smallest rectangle that contains both; an empty one adds nothing.
 inline Rect bounding(const Rect& a, const Rect& b) {
   if (a.empty()) return b;
   if (b.empty()) return a;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Red, green, blue and opacity. Whether colour is premultiplied stands where it is used.
+// Red, green, blue and opacity. Whether colour is premultiplied is specified where the type is used.
 #pragma once
 
 #include <array>

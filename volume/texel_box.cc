@@ -14,7 +14,7 @@ std::size_t texels_along(const TexelBox& box, std::size_t axis) {
   return std::size_t(box.high[axis] - box.low[axis]);
 }
 
-/// Where a texel lies among those of `box`.
+/// Index of a texel within `box`.
 std::size_t place(const TexelBox& box, int x, int y, int z) {
   return (std::size_t(z - box.low[2]) * texels_along(box, 1) + std::size_t(y - box.low[1])) *
              texels_along(box, 0) +

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Points, maps, boxes and half-spaces of texture space, in double precision.
 //
-// Texture space is OpenGL's: the volume fills [0,1]^3, texel i of N is centred on (i + 1/2) / N, and the outer
-// half texel belongs to the volume.
+// Texture space is OpenGL's: the volume fills [0,1]^3, the centre of texel i of N is at (i + 1/2) / N, and the
+// outer half texels belong to the volume.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct Box {
   bool operator==(const Box&) const = default;
 };
 
-/// Keeps the points with normal . t + offset >= 0.
+/// Contains the points with normal . t + offset >= 0.
 struct HalfSpace {
   Vec3 normal{};
   double offset = 0;

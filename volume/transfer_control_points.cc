@@ -13,7 +13,7 @@ namespace understudy::volume {
 
 namespace {
 
-/// So fine that a step between two entries is narrower than any value of 8 bits.
+/// Fine enough that the distance between two entries is less than one 8-bit value.
 constexpr int table_entries = 4096;
 
 using ControlPoint = TransferControlPoints::ControlPoint;
@@ -26,7 +26,7 @@ struct Named {
 const std::array<Named, 5>& named() {
   static const std::array<Named, 5> all{{
       {"grey", {{0, {0, 0, 0}, 0}, {1, {1, 1, 1}, 0.1}}},
-      // The case as a veil, the denser parts within it in colour.
+      // The casing nearly transparent, the denser parts inside it in colour.
       {"engine",
        {{0, {0.5, 0.5, 0.55}, 0},
         {0.28, {0.5, 0.5, 0.55}, 0},
@@ -34,7 +34,7 @@ const std::array<Named, 5>& named() {
         {0.55, {0.6, 0.64, 0.7}, 0.03},
         {0.68, {0.9, 0.45, 0.15}, 0.3},
         {1, {1, 0.85, 0.6}, 0.7}}},
-      // Air is nothing, soft tissue a skin, bone is solid.
+      // Air transparent, soft tissue as a thin skin, bone solid.
       {"ct",
        {{0, {0.8, 0.55, 0.45}, 0},
         {0.22, {0.8, 0.55, 0.45}, 0},
@@ -62,7 +62,7 @@ bool in_unit_range(double value) {
 }
 
 ControlPoint at(const std::vector<ControlPoint>& control_points, double place) {
-  // The last control point that is not behind `place`: at a step the one behind it.
+  // The last control point at or before `place`: of two at one place, the second.
   const auto next = std::ranges::upper_bound(control_points, place, {}, &ControlPoint::at);
   if (next == control_points.begin()) return control_points.front();
   if (next == control_points.end()) return control_points.back();

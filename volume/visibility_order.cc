@@ -9,7 +9,7 @@ namespace understudy::volume {
 
 namespace {
 
-/// The middle of the region, or its deepest corner when the middle lies behind the eye.
+/// The centre of the region, or its deepest corner when the centre lies behind the eye.
 Vec3 seen_point(const RenderRequest& request) {
   const auto depth = [&](const Vec3& t) { return transform_point(request.texture_to_clip, t)[3]; };
   const Box& region = request.region;
@@ -30,8 +30,8 @@ VisibilityOrder::VisibilityOrder(const Matrix4& texture_to_clip) {
 }
 
 VisibilityOrder::VisibilityOrder(const RenderRequest& request) : VisibilityOrder(request.texture_to_clip) {
-  if (request.steps) return;  // steps are counted along depth
-  // The plane through a point that can be seen says whether plane indices rise with depth or fall.
+  if (request.steps) return;  // steps are ordered by depth
+  // The plane through a visible point determines whether plane indices increase or decrease with depth.
   const Vec3& n = request.planes.normal;
   const double towards_eye =
       request.planes.spacing * (dot(n, {eye_[0], eye_[1], eye_[2]}) - dot(n, seen_point(request)) * eye_[3]);

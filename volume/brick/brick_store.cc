@@ -31,9 +31,9 @@ float as_value(float v) {
 
 float sane(float v) {
   return std::clamp(v, -BrickStore::largest_value, BrickStore::largest_value);
-}  // keeps NaN
+}  // NaN stays NaN
 
-/// The bits of one texel, which name a constant block.
+/// The bits of one texel, which identify a constant block.
 template <typename Texel>
 std::uint32_t bits(Texel texel) {
   if constexpr (sizeof(Texel) == 4)
@@ -57,7 +57,7 @@ TexelBox kept_cells(const VolumeDescription& volume, const CellLattice& lattice,
   return kept;
 }
 
-/// The blocks that meet `cells`, counted from the lattice's low corner.
+/// The blocks that intersect `cells`, counted from the lattice's low corner.
 TexelBox blocks_of(const CellLattice& lattice, const TexelBox& cells) {
   TexelBox blocks;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -67,7 +67,7 @@ TexelBox blocks_of(const CellLattice& lattice, const TexelBox& cells) {
   return blocks;
 }
 
-/// Aligned to sixteen.
+/// Bytes of a block, rounded up to a multiple of 16.
 std::size_t bytes_of_block(TexelType type) {
   return (block_texels * bytes_per_texel(type) + 15) / 16 * 16;
 }
@@ -161,7 +161,7 @@ void BrickStore::add_slices(const TexelBox& slice_range, std::span<const std::by
       throw std::invalid_argument(fmt::format("volume {}: slice {} came twice", volume_.id, texel_z));
     slice_seen_[index] = true;
     const std::byte* slice = texels.data() + std::size_t(texel_z - slice_range.low[2]) * slice_bytes;
-    // Wrapped and clamped axes show one slice at several points of the lattice.
+    // Wrapped and clamped axes show one slice at several lattice points.
     const int first = first_block_[2] * block_cells, last = first + block_counts_[2] * block_cells;
     for (int z = first; z <= last; ++z)
       if (lattice_texel(volume_, lattice_, 2, std::min(z, lattice_.cells[2])) == texel_z)
@@ -170,7 +170,7 @@ void BrickStore::add_slices(const TexelBox& slice_range, std::span<const std::by
 }
 
 void BrickStore::place_slice(int lattice_z, const TexelBox& slice_range, const std::byte* slice) {
-  // A block face belongs to both neighbours.
+  // A slice on a block face belongs to both neighbouring layers.
   for (int layer = (lattice_z - 1) / block_cells; layer <= lattice_z / block_cells; ++layer) {
     const int index = layer - first_block_[2];
     if (index < 0 || index >= block_counts_[2] || lattice_z < layer * block_cells) continue;
@@ -201,7 +201,7 @@ template <typename Texel>
 void BrickStore::fill_layer_slice(Layer& layer, int z_in_block, const TexelBox& slice_range,
                                   const std::byte* slice) {
   const int row_texels = slice_range.high[0] - slice_range.low[0];
-  // Where each lattice point of the layer finds its texel in the slice.
+  // The index in the slice of the texel at each lattice point of the layer.
   const auto sources = [&](int axis) {
     std::vector<int> source;
     for (int block = 0; block < block_counts_[axis]; ++block)
@@ -355,7 +355,7 @@ void BrickStore::with_texel(Call call) const {
 
 template <typename Texel>
 void BrickStore::give_up_block(std::size_t block) {
-  auto* place = const_cast<std::byte*>(blocks_[block]);  // of a chunk of this store
+  auto* place = const_cast<std::byte*>(blocks_[block]);  // in a chunk of this store
   if (constant_[block]) {
     Texel value;
     std::memcpy(&value, place, sizeof value);
@@ -434,7 +434,7 @@ void BrickStore::add_ranges(std::size_t block, const Texel* texels) {
     float low = infinity, high = -infinity;
     for (int i = 0; i < block_texels; ++i) {
       const float v = as_value(texels[i]);
-      low = v < low ? v : low;  // written so that NaN changes nothing
+      low = v < low ? v : low;  // comparisons are false for NaN
       high = v > high ? v : high;
     }
     *ranges = {low, high};
@@ -493,7 +493,7 @@ std::size_t BrickStore::most_bytes(const VolumeDescription& volume, const TexelB
   const std::size_t channels = volume.type == TexelType::rgba8 ? 4 : 1;
   const std::size_t of_block =
       bytes_of_block(volume.type) + sizeof(const std::byte*) + channels * sizeof(Range) + sizeof(bool);
-  // A slice on the faces of blocks belongs to two layers, which are kept dense while their slices come.
+  // A slice on block faces belongs to two layers, which are stored densely while their slices arrive.
   constexpr std::size_t layers_at_once = 2;
   return sizeof(BrickStore) + (count + blocks_per_chunk) * of_block +
          layers_at_once * in_layer * block_texels * bytes_per_texel(volume.type);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks that leave a store, and come to one: the cells of ranks whose boxes change.
+// Blocks sent to and received from other stores, when the cells of ranks change.
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -24,7 +24,7 @@ std::vector<std::byte> BrickStore::packed(const BlockPlace& place) const {
 void BrickStore::reshape(const TexelBox& owned_cells,
                          const std::function<std::vector<std::byte>(const BlockPlace&)>& packed_block) {
   if (!finished_) throw std::logic_error("the cells of a store change before all its texels have come");
-  BrickStore other(volume_, owned_cells);  // for its geometry
+  BrickStore other(volume_, owned_cells);  // provides the new geometry
   const std::array<int, 3> first = first_block_, counts = block_counts_;
   const auto held = [&](const BlockPlace& place) {
     for (std::size_t k = 0; k < 3; ++k)

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stores of one machine that hold the same cells: one writes its blocks where the others read them.
+// Stores on one machine that hold the same cells: one writes its blocks to memory that the others read.
 //
-// In the memory lie, one after the other: for each block, where it begins; the ranges of all blocks; the
-// blocks.
+// Layout of the memory: for each block its offset; the ranges of all blocks; the blocks.
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
@@ -16,7 +15,7 @@ namespace {
 using Offset = std::uint64_t;
 
 constexpr std::size_t cache_line = 64;
-/// A sample may read so far beyond the last block.
+/// A sample may read this many bytes beyond the last block.
 constexpr std::size_t read_beyond = 64;
 
 std::size_t at_cache_line(std::size_t bytes) {
@@ -34,7 +33,7 @@ std::size_t BrickStore::shared_blocks_at() const {
 }
 
 std::size_t BrickStore::shared_bytes() const {
-  // There are never more places than blocks.
+  // Blocks never need more storage than one place each.
   return shared_blocks_at() + blocks_.size() * block_bytes_ + read_beyond;
 }
 

@@ -24,19 +24,19 @@ namespace {
 
 using Counts = std::vector<std::uint64_t>;
 
-/// The points of a block along one axis whose texels this store counts: a run, as blocks are boxes.
+/// The range of a block's points along one axis whose texels this store counts.
 struct Run {
   int first = 0;
   int end = 0;
 };
 
-/// Per block along `axis`. A texel may stand behind several lattice points; the first of them counts.
+/// One run per block along `axis`. A texel may be at several lattice points; it is counted at the first one.
 std::vector<Run> counted_points(const BrickStore& store, int axis) {
   const CellLattice& lattice = store.lattice();
   const TexelBox& owned = store.owned_cells();
   const int first = owned.low[axis] - lattice.origin[axis];
   int end = owned.high[axis] - lattice.origin[axis];
-  if (end == lattice.cells[axis]) ++end;  // the upper rim
+  if (end == lattice.cells[axis]) ++end;  // the upper boundary
   std::vector<bool> seen(std::size_t(store.description().size[axis]), false);
   std::vector<bool> counts(std::size_t(lattice.cells[axis] + 1), false);
   for (int point = 0; point <= lattice.cells[axis]; ++point) {
@@ -48,7 +48,7 @@ std::vector<Run> counted_points(const BrickStore& store, int axis) {
   constexpr int cells = BrickStore::block_cells;
   for (int block = 0; block < store.block_counts()[std::size_t(axis)]; ++block) {
     const int start = cells * (store.first_block()[std::size_t(axis)] + block);
-    // The last point of a block is the first of the next, if there is a next.
+    // The last point of a block is the first of the next block, if there is one.
     const int stop = std::min(start + cells, lattice.cells[axis]) == lattice.cells[axis]
                          ? lattice.cells[axis] + 1
                          : start + cells;
@@ -63,7 +63,7 @@ std::vector<Run> counted_points(const BrickStore& store, int axis) {
   return runs;
 }
 
-/// The bin of a texel, or `count` where it has none.
+/// The bin of a texel, or `count` if it has none.
 template <typename Texel>
 class BinOf {
  public:
@@ -84,7 +84,7 @@ class BinOf {
 
  private:
   std::uint16_t computed(double value) const {
-    if (!(value >= low_ && value <= high_)) return std::uint16_t(count_);  // no number either
+    if (!(value >= low_ && value <= high_)) return std::uint16_t(count_);  // also for NaN
     return std::uint16_t(std::min(int((value - low_) * per_unit_), count_ - 1));
   }
 
@@ -105,7 +105,7 @@ Counts counted(const BrickStore& store, const HistogramBins& bins) {
                                Counts& counts) {
     const std::byte* const data = store.block_data()[b];
     const BrickStore::Range& range = store.ranges(b).front();
-    // Ranges leave out what is no number, which only floats can be.
+    // Ranges ignore NaN, which only float texels can hold.
     if (std::is_integral_v<Texel> && range.low == range.high) {
       counts[bin_of(Texel(range.low))] += std::uint64_t(x_run.end - x_run.first) *
                                           std::uint64_t(y_run.end - y_run.first) *
@@ -140,7 +140,7 @@ Counts counted(const BrickStore& store, const HistogramBins& bins) {
         std::ranges::transform(a, b, a.begin(), std::plus<>());
         return a;
       });
-  counts.pop_back();  // without a bin
+  counts.pop_back();  // texels without a bin
   return counts;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often values occur in a volume: each rank counts the texels of its own cells, so that sums over the ranks
-// count every texel once.
+// Histogram of the values of a volume. Each rank counts the texels of its own cells, so that sums over the
+// ranks count every texel once.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ class BrickStore;
 constexpr int max_histogram_bins = 256;
 
 /// Bins of equal width over normalised texel values (u8: v/255, u16: v/65535, float: v) from `low` to `high`;
-/// the last one is closed. What lies outside is not counted, and neither are values that are no numbers.
+/// the last one is closed. Values outside and NaN are not counted.
 struct HistogramBins {
   double low = 0;
   double high = 1;
@@ -21,11 +21,11 @@ struct HistogramBins {
   bool operator==(const HistogramBins&) const = default;
 };
 
-/// Throws std::invalid_argument for bins without width, or too many.
+/// Throws std::invalid_argument for an empty range, or an invalid number of bins.
 void check(const HistogramBins& bins);
 
-/// Of the texels at which the store's own cells begin; those on the upper rim of the volume belong to the last
-/// cells. The store is finished and holds a scalar field. Throws std::invalid_argument.
+/// Counts the texels at the low corners of the store's own cells; texels on the upper boundary of the volume
+/// belong to the last cells. The store must be finished and hold a scalar field. Throws std::invalid_argument.
 std::vector<std::uint64_t> histogram(const BrickStore& store, const HistogramBins& bins);
 
 }  // namespace understudy::volume

@@ -19,7 +19,7 @@ std::span<std::byte> mapped(int descriptor, std::size_t bytes, int protection) {
   void* const memory = ::mmap(nullptr, bytes, protection, MAP_SHARED | MAP_NORESERVE, descriptor, 0);
   if (memory == MAP_FAILED)
     throw std::system_error(errno, std::generic_category(), "memory for blocks cannot be mapped");
-  // Where the system grants large pages only to those who ask; it need not.
+  // Requests large pages, for systems that grant them on request only; failure is ignored.
   ::madvise(memory, bytes, MADV_HUGEPAGE);
   return {static_cast<std::byte*>(memory), bytes};
 }

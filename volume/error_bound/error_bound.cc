@@ -24,7 +24,7 @@ namespace {
 
 using Place = std::array<float, 3>;
 
-/// What of an image's arithmetic is float: of a whole ray, and of each sample.
+/// Rounding errors of an image's float arithmetic: per ray, and per sample.
 constexpr double rounding_of_ray = 1e-6;
 constexpr double rounding_of_sample = 2.5e-7;
 
@@ -39,23 +39,23 @@ struct Ray {
   }
 };
 
-/// How the field may vary along a segment, in entries of the images' function.
+/// Bounds of the field's variation along a segment, in entries of the images' function.
 struct AlongRay {
   double slope = 0;     ///< G, the greatest slope
   double bend = 0;      ///< V, the variation of the slope
-  double weighted = 0;  ///< that, by Peano's kernel of the midpoint rule
-  int cells = 1;        ///< that the segment may cross
+  double weighted = 0;  ///< W: V weighted by the Peano kernel of the midpoint rule
+  int cells = 1;        ///< number of cells that the segment may cross
 };
 
-/// Of the midpoint rule over [0, 1]: what a jump of the derivative at a place adds to the error. Places are
-/// known to within rounding.
+/// The Peano kernel of the midpoint rule over [0, 1]: the contribution of a jump of the derivative at `place`
+/// to the error. Positions are known up to rounding.
 double peano_kernel(double place) {
   constexpr double rounding = 2e-3;
   const double to_end = 0.5 - std::max(std::abs(place - 0.5) - rounding, 0.0);
   return to_end > 0 ? to_end * to_end / 2 : 0;
 }
 
-/// `length` steps of a ray, from `from` to `to`.
+/// Bounds along `length` steps of a ray, from `from` to `to`.
 AlongRay along_ray(const Ray& ray, const Place& from, const Place& to, double length, const Variation& near,
                    double scale) {
   AlongRay along;
@@ -63,7 +63,7 @@ AlongRay along_ray(const Ray& ray, const Place& from, const Place& to, double le
     const double speed = std::abs(double(ray.step[axis]));
     along.slope += speed * double(near.slope[axis]);
     const double jump = speed * double(near.bend[axis]);
-    // Faces of cells between the two places, or so close that rounding may pass them.
+    // Cell faces between the two positions, or so close that rounding may lead past them.
     constexpr double rounding = 1e-3;
     const auto [low, high] = std::minmax({double(from[axis]), double(to[axis])});
     const auto first = int(std::ceil(low - rounding)), last = int(std::floor(high + rounding));
@@ -85,12 +85,13 @@ AlongRay along_ray(const Ray& ray, const Place& from, const Place& to, double le
   return along;
 }
 
-/// By how much the mean of a quantity over a segment, `length` steps long, may differ from its value half a
-/// step behind the segment's begin: of its range, greatest slope, curvature and sum of kinks over values.
+/// Bounds the difference between the mean of a quantity over a segment of `length` steps and its value half a
+/// step after the segment's start, given the quantity's range, greatest slope and curvature, and sum of kinks
+/// over values.
 double off_middle(const AlongRay& along, double length, double range, double slope, double curve,
                   double kinks) {
   if (length == 1) {
-    // A cubic has a value three times at most.
+    // A cubic takes each value at most three times.
     const double passes = along.slope + (3 * along.cells - 1) * along.bend;
     const double first_order = slope * along.slope / 4;
     const double second_order =
@@ -108,19 +109,19 @@ class BoundWalk {
   BoundWalk(const Scene& scene, const FieldVariation& field, const MediumVariation& medium, float termination)
       : reader_(scene), scene_(scene), field_(field), medium_(medium), termination_(termination) {}
 
-  /// Bound of the samples `first` to `last`, and their least opacity. Where the ray goes on behind them in
-  /// cells of others, anything may follow.
+  /// Bound of the error of samples `first` to `last`, and their least opacity. If the ray continues in cells of
+  /// other ranks, anything may follow.
   std::array<double, 2> bound(const Ray& ray, int first, int last, float last_length) {
     segments_.clear();
     double transparency = 1;
     for (int k = first; k <= last && transparency >= double(termination_); ++k) {
       segments_.push_back(segment_at(ray, k, k == last ? double(last_length) : 1));
       transparency *= segments_.back().transparency;
-      // A segment reaches a step before its sample, at most, and a step behind it.
+      // A segment extends at most one step before its sample and one step behind it.
       const float empty = reader_.steps_in_empty(ray.step);
       if (empty >= 3) k += int(std::min(empty, 1e6F)) - 2;
     }
-    // What lies behind the end of a ray that has become opaque, and is not looked at.
+    // What lies behind the point where the ray became opaque is not sampled.
     const bool ended = transparency < double(termination_);
     const double brightest = std::max(1.0, medium_.brightest());
     double bound = ended ? brightest : 0;
@@ -134,7 +135,7 @@ class BoundWalk {
       least_opaque = 1 - most_transparent * (1 - least_opaque);
       behind.put_before(*segment);
     }
-    // Once for all parts of a ray.
+    // Added once for all parts of a ray.
     return {bound + (first == 0 ? rounding_of_ray : 0), least_opaque};
   }
 
@@ -142,16 +143,16 @@ class BoundWalk {
   struct Segment {
     double transparency = 1;        ///< in the image
     std::array<double, 4> plain{};  ///< its plain colour, and 1
-    double transparency_off = 0;    ///< bounds of the error of its transparency,
-    double colour_off = 0;          ///< and of its colour but for what follows from that
+    double transparency_off = 0;    ///< bound of the error of its transparency
+    double colour_off = 0;          ///< bound of the remaining error of its colour
   };
 
   /// What the image shows behind a segment.
   struct Behind {
     std::array<double, 4> shown{};
-    double open = 0;  ///< the transparency up to what is not known; 0: nothing is
+    double open = 0;  ///< transparency in front of the unknown rest; 0: nothing is unknown
 
-    /// How far that may be from a plain colour in any channel.
+    /// Bound of the difference between what is shown behind and a plain colour, in any channel.
     double farthest_from(const std::array<double, 4>& plain, double brightest) const {
       double most = 0;
       for (std::size_t k = 0; k < 4; ++k) {
@@ -197,9 +198,9 @@ class BoundWalk {
     for (std::size_t k = 0; k < 3 && alpha > 0; ++k)
       segment.plain[k] = (double(row[k]) + (double(place) - double(entry)) * double(row[4 + k])) / alpha;
     segment.plain[3] = 1;
-    // Neither is more opaque than the densest of the values, nor is the difference more than that of depths.
+    // Neither image nor integral is more opaque than the densest value; depths bound the difference, too.
     const double most_opaque = 1 - std::exp(-length * (bounds.depth + bounds.depth_error));
-    // Infinite, or no number, where slopes are steep.
+    // Infinite or NaN where slopes are steep.
     const double by_depth = transparency * std::expm1(off);
     segment.transparency_off = by_depth <= most_opaque ? by_depth : most_opaque;
     segment.colour_off =
@@ -207,14 +208,14 @@ class BoundWalk {
     return segment;
   }
 
-  /// Of the integral of X - X_m over opacity.
+  /// Bounds the integral of X - X_m over opacity.
   static double colour_off(const AlongRay& along, double length, const MediumBounds& bounds) {
     const double opacity = 1 - std::exp(-length * bounds.depth);
     const double by_range = bounds.colour_range * opacity;
     if (length != 1) return by_range;
     const double off = off_middle(along, 1, bounds.colour_range, bounds.colour_slope, bounds.colour_curve,
                                   bounds.colour_kinks);
-    // Opacity a place adds, per step, changes by so much along the segment.
+    // Bound of the change of opacity per step along the segment.
     const double changes = bounds.depth_slope * along.slope + bounds.depth * bounds.depth;
     const double by_slopes = bounds.depth * off + bounds.colour_slope * along.slope * changes / 12;
     return std::min(by_range, std::isfinite(by_slopes) ? by_slopes : by_range);
@@ -225,10 +226,10 @@ class BoundWalk {
   const FieldVariation& field_;
   const MediumVariation& medium_;
   float termination_;
-  std::vector<Segment> segments_;  ///< of the ray that is bounded
+  std::vector<Segment> segments_;  ///< of the current ray
 };
 
-/// All that is needed of a request.
+/// The parts of a request that bounds depend on.
 struct BoundScene {
   BoundScene(const BrickStore& store, const RenderRequest& request)
       : table(std::get<TransferFunction>(request.classification), store.description().type, 0),
@@ -313,7 +314,7 @@ MediumVariation variation_of(const MediumFunction& medium, const RenderRequest& 
   return {medium.function, medium.step, std::get<TransferFunction>(request.classification)};
 }
 
-/// Rounded up.
+/// Converts to float, rounding up.
 float upper(double bound) {
   return std::nextafter(float(bound), std::numeric_limits<float>::max());
 }
@@ -364,7 +365,7 @@ std::vector<float> error_bounds(const BrickStore& store, const FieldVariation& v
   const MediumVariation medium = variation_of(*request.bound_of, request);
   bound_rays_of_any_type(bound_scene, variation, medium, request, rays,
                          [&](int x, int y, const std::array<double, 2>& found) {
-                           // No two images differ by more.
+                           // The difference between two images is never greater.
                            bounds[std::size_t(y) * std::size_t(rays.width) + std::size_t(x)] =
                                upper(std::min(found[0], std::max(1.0, medium.brightest())));
                          });

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // A certified bound of the error of an image against the volume rendering integral, for every pixel.
 //
-// The image is made of samples that cover whole rays (RaySteps::cover_whole_ray). A ray is divided into
-// segments, one step long, in whose middles the samples lie. Let R be what the integral shows from a segment
-// on, t the transparency of the segment and c the colour that it adds, and primes what the image has in their
-// place:
+// The samples of the image cover whole rays (RaySteps::cover_whole_ray). A ray is divided into segments, one
+// step long, with a sample in the middle of each. Let R be the integral from a segment on, t the transparency
+// of the segment and c the colour that it adds; primes denote the corresponding values of the image:
 //
 //     R_i - R'_i = (c_i - c'_i) + (t_i - t'_i) R'_(i+1) + t_i (R_(i+1) - R'_(i+1))
 //
-// so that a bound for R_i follows from one for R_(i+1), from the end of the ray to its begin. With the plain
-// colour X, c is the integral of X over opacity, and c' = X_m (1 - t') with X_m in the middle:
+// so that a bound for R_i follows from one for R_(i+1), from the end of the ray to its beginning. With the
+// plain colour X, c is the integral of X over opacity, and c' = X_m (1 - t') with X_m in the middle:
 //
 //     |(c - c') + (t - t') R'| <= |t - t'| |R' - X_m| + |integral of (X - X_m) over opacity|
 //
-// Both come from how much the optical depth K and X may vary on a segment. Let G bound the slope of the field
-// along the ray, V the variation of that slope, and W that variation weighted by Peano's kernel of the midpoint
-// rule, (1/2 - |s|)^2 / 2 at s steps from the middle (field_variation.h). Over the values that the segment may
-// have, let k be the steepest slope of K, q its greatest curvature between kinks, and j the sum of its kinks
-// (medium_variation.h). Then the depth differs from that of its middle by no more than the least of
+// Both terms follow from how much the optical depth K and X may vary on a segment. Let G bound the slope of the
+// field along the ray, V the variation of that slope, and W that variation weighted by the Peano kernel of the
+// midpoint rule, (1/2 - |s|)^2 / 2 at s steps from the middle (field_variation.h). Over the values that the
+// segment may have, let k be the steepest slope of K, q its greatest curvature between kinks, and j the sum of
+// its kinks (medium_variation.h). Then the difference between the depth and that of its middle is at most the
+// least of
 //
 //     the range of K        k G / 4        k W + q G^2 / 24 + j (G + n V) / 8
 //
-// The last is the midpoint rule's error, the integral of the kernel over what the derivative changes by: where
-// the field bends, where K does, and where the field passes a kink of K, which in the cells that the segment
-// crosses it does n + 1 times at most, but once with a slope of V or less. The same holds for X.
+// The last is the error of the midpoint rule, the integral of the kernel over the changes of the derivative:
+// where the field bends, where K bends, and where the field crosses a kink of K. In the cells of the segment
+// this happens at most n + 1 times, all but once with a slope of at most V. The same holds for X.
 #pragma once
 
 #include <memory>
@@ -39,11 +39,11 @@ namespace understudy::volume {
 
 class MediumVariation;
 
-/// Draws requests whose `bound_of` is set, on the cells that a store owns. What depends on the texels alone,
-/// and on the last medium, is kept.
+/// Draws requests whose `bound_of` is set, on the cells that a store owns. Data that depends only on the
+/// texels, or on the last medium, is cached.
 class ErrorBoundRenderer final : public BrickRenderer {
  public:
-  /// `store` must outlive it and be finished before the first render().
+  /// `store` must outlive the renderer and be finished before the first render().
   explicit ErrorBoundRenderer(const BrickStore& store);
   ~ErrorBoundRenderer() override;
   ErrorBoundRenderer(ErrorBoundRenderer&&) noexcept;
@@ -62,9 +62,9 @@ class ErrorBoundRenderer final : public BrickRenderer {
   std::unique_ptr<MediumVariation> medium_;
 };
 
-/// The bounds alone, of few pixels: those in the middle of squares of `pixels_apart` x `pixels_apart`, row by
-/// row, as many as whole squares fit. The store must hold the whole volume; the window must be the viewport,
-/// and begin at (0, 0). Throws as ErrorBoundRenderer does.
+/// Computes bounds for a few pixels only: those in the centres of squares of `pixels_apart` x `pixels_apart`,
+/// row by row, for as many whole squares as fit. The store must hold the whole volume; the window must be the
+/// viewport, and begin at (0, 0). Throws as ErrorBoundRenderer does.
 std::vector<float> error_bounds(const BrickStore& store, const FieldVariation& variation,
                                 const RenderRequest& request, int pixels_apart);
 

@@ -14,7 +14,7 @@ namespace {
 
 using LatticePoint = std::array<int, 3>;
 
-/// The store's texels by lattice point; beyond what is held the nearest one.
+/// The store's texels by lattice point; outside the held points, the nearest one.
 class HeldTexels {
  public:
   explicit HeldTexels(const BrickStore& store) : store_(store) {
@@ -26,7 +26,7 @@ class HeldTexels {
   }
 
   const LatticePoint& low() const { return low_; }
-  /// The last lattice point that is held.
+  /// The last lattice point held.
   const LatticePoint& high() const { return high_; }
 
   float at(LatticePoint p) const {
@@ -67,10 +67,10 @@ class HeldTexels {
   LatticePoint low_{}, high_{};
 };
 
-/// The texels that a row of cubes looks at: those of its cells, and one more to each side.
+/// The texels that a row of cubes depends on: those of its cells, and one more on each side.
 class RowOfTexels {
  public:
-  /// From the lattice point `low` on, for `cells` cells along x.
+  /// Begins at lattice point `low` and covers `cells` cells along x.
   RowOfTexels(const HeldTexels& texels, const LatticePoint& low, int cells)
       : low_{low[0] - 1, low[1] - 1, low[2] - 1}, width_(cells + 3) {
     values_.reserve(std::size_t(width_) * rows * rows);
@@ -91,7 +91,7 @@ class RowOfTexels {
   std::vector<float> values_;
 };
 
-/// The greater one; infinite where `value` is no number.
+/// Raises `most` to |value|; to infinity if `value` is NaN.
 void raise(float& most, float value) {
   most = std::isnan(value) ? std::numeric_limits<float>::infinity() : std::max(most, std::abs(value));
 }
@@ -101,7 +101,7 @@ LatticePoint moved(LatticePoint p, std::size_t axis, int by) {
   return p;
 }
 
-/// Of one cell, whose low corner is `p`.
+/// Raises the bounds by those of one cell, whose low corner is `p`.
 void raise_by_cell(const RowOfTexels& texels, const LatticePoint& p, Variation& variation) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
@@ -110,7 +110,8 @@ void raise_by_cell(const RowOfTexels& texels, const LatticePoint& p, Variation& 
         const LatticePoint edge = moved(moved(p, a, i), b, j);
         raise(variation.slope[axis], texels.at(moved(edge, axis, 1)) - texels.at(edge));
       }
-    // The faces across the axis: the derivative along it jumps there, and the others twist in them.
+    // The faces across the axis: the derivative along it jumps there; the mixed derivative of the other two is
+    // `twist`.
     for (const int side : {0, 1}) {
       const LatticePoint face = moved(p, axis, side);
       for (const int i : {0, 1})

@@ -25,14 +25,14 @@ PlainColour colour_difference(const PlainColour& a, const PlainColour& b) {
 
 }  // namespace
 
-/// What is known of values between two entries of the images' function, or of several such pieces.
+/// The medium between two neighbouring entries of the images' function.
 struct MediumVariation::Piece {
   double depth_low = 0, depth_high = 0;              ///< K at its ends
-  double depth_slope_low = 0, depth_slope_high = 0;  ///< K' there
+  double depth_slope_low = 0, depth_slope_high = 0;  ///< K' at its ends
   double depth_curve = 0;                            ///< the greatest K''
   bool visible = false;
   PlainColour low{}, high{};              ///< X at its ends
-  PlainColour slope_low{}, slope_high{};  ///< X' there
+  PlainColour slope_low{}, slope_high{};  ///< X' at its ends
   double colour_curve = 0;                ///< the greatest |X''|
   double glow = 0;
   double depth_error = 0, colour_error = 0;
@@ -40,14 +40,14 @@ struct MediumVariation::Piece {
 
 namespace {
 
-/// What is steeper counts as this: then ranges bound the error, not slopes.
+/// Steeper slopes are capped at this: the error is then bounded by ranges instead of slopes.
 constexpr double steepest_counted = 1e9;
 
 double capped(double slope) {
   return std::clamp(slope, -steepest_counted, steepest_counted);
 }
 
-/// A convex function lies below its chord, by no more than a quarter of the change of its slope.
+/// The greatest distance of a convex function below its chord: a quarter of the change of its slope.
 double below_chord(double slope_low, double slope_high) {
   return std::abs(slope_high - slope_low) / 4;
 }
@@ -70,7 +70,7 @@ void set_colours(const std::array<double, 4>& low, const std::array<double, 4>& 
     if (!piece.visible) continue;
     piece.low[k] = a > 0 ? low[k] / a : high[k] / b;
     piece.high[k] = b > 0 ? high[k] / b : low[k] / a;
-    // X' is this over the square of the opacity, and its sign stays. Rounding of floats is no slope.
+    // X' is this over the squared opacity, so its sign is constant. Float rounding does not count as a slope.
     double numerator = (high[k] - low[k]) * a - low[k] * (b - a);
     if (std::abs(numerator) <= 4e-7 * (std::abs(high[k] * a) + std::abs(low[k] * b))) numerator = 0;
     const auto slope = [&](double opacity) {
@@ -87,7 +87,7 @@ void set_colours(const std::array<double, 4>& low, const std::array<double, 4>& 
   }
 }
 
-/// `in_function`: entries of `function` for one of the images' function.
+/// `in_function`: entries of `function` per entry of the images' function.
 template <typename Piece>
 Piece piece_of(const TransferFunction& function, double step, const TransferFunction& of_images,
                std::size_t entry, double in_function) {
@@ -104,8 +104,8 @@ Piece piece_of(const TransferFunction& function, double step, const TransferFunc
       step;
   set_colours(low, high, step, piece);
 
-  // The images' function has an opacity that is linear in between, whose depth is convex as well; both have the
-  // same ends, but for float.
+  // The opacity of the images' function is linear in between, so its depth is convex as well; both have the
+  // same ends, up to float rounding.
   constexpr double rounding = 1.2e-7;
   const double seen_low = std::min(double(of_images.entries[entry][3]), 1.0);
   const double seen_high = std::min(double(of_images.entries[entry + 1][3]), 1.0);
@@ -114,7 +114,7 @@ Piece piece_of(const TransferFunction& function, double step, const TransferFunc
   piece.depth_error = of_ends + std::max(below_chord(piece.depth_slope_low, piece.depth_slope_high),
                                          below_chord(slope_of_depth(1, seen_low, seen_high - seen_low),
                                                      slope_of_depth(1, seen_high, seen_high - seen_low)));
-  // A step shows X (1 - exp(-K)): how far both factors are from linear, and a product of linear ones is.
+  // A step shows X (1 - exp(-K)): the deviations of both factors, and of a product of linear ones, from linear.
   const double off = greatest_channel(colour_difference(piece.slope_high, piece.slope_low)) / 4;
   piece.colour_error =
       rounding +
@@ -125,7 +125,7 @@ Piece piece_of(const TransferFunction& function, double step, const TransferFunc
   return piece;
 }
 
-/// Lets colours go on evenly where nothing is visible.
+/// Interpolates colours linearly across pieces where nothing is visible.
 template <typename Piece>
 void fill_invisible(std::vector<Piece>& pieces) {
   for (std::size_t i = 0; i < pieces.size();) {
@@ -146,7 +146,7 @@ void fill_invisible(std::vector<Piece>& pieces) {
   }
 }
 
-/// The greatest and least figures of several pieces.
+/// Extremes over several pieces.
 struct Extremes {
   double depth = 0, least_depth = infinite, depth_slope = 0, colour_slope = 0;
   double depth_curve = 0, colour_curve = 0;
@@ -186,7 +186,7 @@ Extremes extremes_of(const Piece& piece, const Piece* before) {
     all.low[k] = std::min(piece.low[k], piece.high[k]);
     all.high[k] = std::max(piece.low[k], piece.high[k]);
   }
-  // Colours may jump where the opacity touches 0.
+  // Colours may jump where the opacity is 0.
   if (before != nullptr && greatest_channel(colour_difference(piece.low, before->high)) > 1e-6)
     all.colour_slope = steepest_counted;
   return all;
@@ -203,8 +203,9 @@ struct Kinks {
   }
 };
 
-/// Between the slopes before a value and those behind it; an end of the function has no piece beyond, where all
-/// is even. Between entries that opacity_corrected() adds there is rounding alone.
+/// The jumps of slopes between two neighbouring pieces; null: beyond an end of the function, where everything
+/// is constant. At entries that opacity_corrected() inserts, slopes differ by rounding only, which does not
+/// count.
 template <typename Piece>
 Kinks kinks_between(const Piece* before, const Piece* behind) {
   const auto jump = [](double a, double b) {
@@ -220,7 +221,7 @@ Kinks kinks_between(const Piece* before, const Piece* behind) {
 
 }  // namespace
 
-/// Answers for any range of pieces.
+/// Bounds over any range of pieces.
 class MediumVariation::Ranges {
  public:
   explicit Ranges(const std::vector<Piece>& pieces)
@@ -244,14 +245,14 @@ class MediumVariation::Ranges {
     }
   }
 
-  /// Of the pieces first .. end - 1, and of what is `below` and `above` the function's ends.
+  /// Over the pieces first .. end - 1, and beyond the function's low (`below`) and high (`above`) end.
   MediumBounds over(std::size_t first, std::size_t end, bool below, bool above) const {
     const auto level = std::size_t(std::bit_width(std::max<std::size_t>(end - first, 1)) - 1);
     Extremes all = extremes_[level][first];
     all.add(extremes_[level][end - (std::size_t(1) << level)]);
     MediumBounds bounds;
     bounds.depth = all.depth;
-    bounds.depth_range = all.depth == all.least_depth ? 0 : all.depth - all.least_depth;  // infinite, perhaps
+    bounds.depth_range = all.depth == all.least_depth ? 0 : all.depth - all.least_depth;  // may be infinite
     bounds.depth_slope = all.depth_slope;
     bounds.depth_curve = all.depth_curve;
     bounds.colour_range = greatest_channel(colour_difference(all.high, all.low));
@@ -271,7 +272,7 @@ class MediumVariation::Ranges {
 
  private:
   std::vector<std::vector<Extremes>> extremes_;  ///< of 1, 2, 4, ... pieces, by the first
-  std::vector<Kinks> kinks_;                     ///< sums up to and with the low end of a piece
+  std::vector<Kinks> kinks_;                     ///< prefix sums, up to and including the low end of a piece
   Kinks first_kinks_, last_kinks_;               ///< at the function's ends
 };
 

@@ -34,7 +34,7 @@ void Base64Source::restart() {
   ended_ = false;
 }
 
-// -1 where the text ends.
+// Returns -1 at the end of the text.
 int Base64Source::next_digit() {
   for (;;) {
     if (used_ == text_.size()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What base64 text stands for, as VTK writes it.
+// Decodes base64 text, as written by VTK.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@ namespace understudy::volume {
 
 class Base64Source : public ForwardSource {
  public:
-  /// The text begins at `offset` of `below`, after white space if there is any, and ends with padding or where
-  /// the first other character stands. White space within is passed over.
+  /// The text begins at `offset` of `below`, optionally after white space, and ends with padding or at the
+  /// first other character. White space within the text is skipped.
   Base64Source(std::shared_ptr<ByteSource> below, std::uint64_t offset);
 
  protected:

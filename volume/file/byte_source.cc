@@ -19,7 +19,7 @@ namespace understudy::volume {
 
 namespace {
 
-/// Closed on every way out, also of a constructor.
+/// Owns a file descriptor, so that it is closed even if a constructor throws.
 struct Descriptor {
   int number = -1;
 

@@ -13,7 +13,7 @@ namespace understudy::volume {
 
 namespace {
 
-constexpr int gzip_or_zlib = 15 + 32;  // the largest window; the kind is found out
+constexpr int gzip_or_zlib = 15 + 32;  // the largest window; detects the format
 
 }  // namespace
 
@@ -56,7 +56,7 @@ std::size_t GzipSource::next(std::span<std::byte> to) {
     const int code = inflate(&stream_, Z_NO_FLUSH);
     filled += room - stream_.avail_out;
     if (code == Z_STREAM_END) {
-      // Another member may follow; anything else behind the stream is not ours.
+      // Another gzip member may follow; any other data after the stream is ignored.
       if (stream_.avail_in == 0) refill();
       ended_ = stream_.avail_in == 0 || *stream_.next_in != 0x1f;
       if (!ended_) inflateReset(&stream_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a gzip or zlib stream holds.
+// Decompresses a gzip or zlib stream.
 #pragma once
 
 #include <zlib.h>
@@ -12,8 +12,8 @@ namespace understudy::volume {
 
 class GzipSource : public ForwardSource {
  public:
-  /// The stream begins at `offset` of `below`, and may have several members. A stream that ends too early is
-  /// short; a damaged one is a FileError.
+  /// The stream begins at `offset` of `below`, and may have several members. A truncated stream yields fewer
+  /// bytes; a damaged one throws FileError.
   GzipSource(std::shared_ptr<ByteSource> below, std::uint64_t offset);
   GzipSource(const GzipSource&) = delete;
   GzipSource& operator=(const GzipSource&) = delete;
@@ -28,7 +28,7 @@ class GzipSource : public ForwardSource {
   [[noreturn]] void fail(const char* what) const;
 
   std::uint64_t start_;
-  std::uint64_t from_ = 0;  ///< of `below`: the next compressed bytes
+  std::uint64_t from_ = 0;  ///< offset in `below` of the next compressed bytes
   std::array<std::byte, 1U << 16> compressed_{};
   z_stream stream_{};
   bool ended_ = false;

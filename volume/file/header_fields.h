@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Headers that are lines of text with a field each: what NRRD and MetaImage have in common.
+// Text headers with one field per line: shared by NRRD and MetaImage.
 #pragma once
 
 #include <cstddef>
@@ -11,25 +11,25 @@
 
 namespace understudy::volume {
 
-/// Without the blanks around it.
+/// Removes leading and trailing blanks.
 std::string trimmed(std::string_view text);
 
-/// Between blanks; no more than `most` and one.
+/// The words of `text`, separated by blanks; at most `most` + 1 of them.
 std::vector<std::string> words_of(const std::string& text, std::size_t most);
 
 class HeaderFields {
  public:
-  /// For messages: what the format is called, and where the file lies.
+  /// The name of the format and the file's path, for messages.
   HeaderFields(std::string format, std::string path);
 
-  /// Throws FileError when there is one of this name.
+  /// Throws FileError if there is a field of this name already.
   void add(const std::string& name, const std::string& value);
 
-  /// Empty when there is none.
+  /// Empty if there is no such field.
   std::string text(const char* name) const;
-  /// Throws FileError when there is none, or nothing in it.
+  /// Throws FileError if there is no such field, or it is empty.
   std::string required(const char* name) const;
-  /// `value`, which came from the field `name`. Throws FileError unless it is a number of `low` to `high`.
+  /// Parses `value`, the text of the field `name`. Throws FileError unless it is a number from `low` to `high`.
   std::int64_t integer(const char* name, const std::string& value, std::int64_t low, std::int64_t high) const;
 
   /// Throws FileError.

@@ -18,7 +18,7 @@
 namespace understudy::volume {
 namespace {
 
-// The second half finds out copies that took the file for text, as PNG's does.
+// The second half detects conversions of line ends by copying as text, like PNG's signature.
 constexpr std::array<unsigned char, 8> first_bytes{'U', 'V', 'O', 'L', '\r', '\n', 0x1a, '\n'};
 constexpr std::uint32_t format_version = 1;
 
@@ -106,7 +106,7 @@ std::uint64_t blocks_begin(const LevelGrid& grid) {
 }
 
 bool is_hierarchical(const std::string& path, const ReadableFiles& files) {
-  // What is damaged behind its name is refused as such.
+  // A file with this signature and damage elsewhere is refused as damaged.
   constexpr std::size_t name = 4;
   std::array<std::byte, name> bytes{};
   const auto file = open_file(path, files);
@@ -164,7 +164,7 @@ std::vector<HierarchicalBlock> read_block_table(ByteSource& file, const Hierarch
                                                 const LevelGrid& grid) {
   const std::optional<std::uint64_t> there = file.size();
   const std::uint64_t first = blocks_begin(grid);
-  // Before memory is taken for what a header claims.
+  // Checked before memory is allocated according to the header.
   if (!there || *there < first) refuse(file.path(), "truncated: it ends before its blocks");
   std::vector<std::byte> bytes(std::size_t(first) - hierarchical_header_bytes);
   read_all(file, hierarchical_header_bytes, bytes);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The file of a hierarchical volume (.uvol), version 1: docs/format.md. A header, a table of blocks from the
-// coarsest level on, and the blocks in the same order. Numbers are little-endian.
+// The file format of hierarchical volumes (.uvol), version 1: docs/format.md. A header, a table of blocks from
+// the coarsest level on, and the blocks in the same order. Numbers are little-endian.
 #pragma once
 
 #include <array>
@@ -19,20 +19,20 @@ namespace understudy::volume {
 struct HierarchicalHeader {
   FileDescription description;
   Prediction prediction = Prediction::linear;
-  double max_error = 0;  ///< that was allowed, in scalars of the file
+  double max_error = 0;  ///< permitted, in scalars of the file
 };
 
-/// What the table says of a block.
+/// A block's entry in the table.
 struct HierarchicalBlock {
   std::uint64_t offset = 0;  ///< in the file
   std::uint32_t bytes = 0;
   double quantum = 0;  ///< of its residuals (BlockCoding)
-  /// The least and the greatest scalar of the volume in its region, not-a-numbers aside; low > high: there is
+  /// The least and the greatest scalar of the volume in the block's region, ignoring NaN; low > high: there is
   /// none.
   double low = 0;
   double high = -1;
-  /// No scalar of the volume in its region is farther than that from what the next coarser level gives there by
-  /// trilinear interpolation. Infinite where some are no finite numbers. Of the coarsest level: 0.
+  /// Upper bound of the difference between the volume's scalars in the region and the trilinear interpolation
+  /// of the next coarser level. Infinite if some scalars are not finite. For the coarsest level: 0.
   double coarser_error = 0;
 };
 
@@ -40,10 +40,10 @@ constexpr std::size_t hierarchical_header_bytes = 128;
 constexpr std::size_t hierarchical_block_bytes = 48;
 
 std::array<std::byte, hierarchical_header_bytes> header_bytes(const HierarchicalHeader& header);
-/// With their checksum.
+/// Includes the checksum.
 std::vector<std::byte> table_bytes(std::span<const HierarchicalBlock> blocks);
 
-/// Where the first block may begin.
+/// The lowest possible offset of the first block.
 std::uint64_t blocks_begin(const LevelGrid& grid);
 
 /// By the first bytes.
@@ -51,7 +51,7 @@ bool is_hierarchical(const std::string& path, const ReadableFiles& files = {});
 
 /// Both throw FileError, naming the file.
 HierarchicalHeader read_hierarchical_header(ByteSource& file);
-/// Every block lies in the file and has no more bytes than its samples can take.
+/// Every block is checked to lie in the file and to have no more bytes than its samples can take.
 std::vector<HierarchicalBlock> read_block_table(ByteSource& file, const HierarchicalHeader& header,
                                                 const LevelGrid& grid);
 

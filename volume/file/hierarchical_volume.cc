@@ -48,7 +48,7 @@ class TypedVolume : public HierarchicalVolume {
   }
 
  private:
-  /// Adds these blocks, and those of coarser levels that they are decoded from.
+  /// Adds these blocks, and the blocks of coarser levels from which they are decoded.
   void use(int level, const TexelBox& blocks, std::set<std::size_t>& used) const {
     for_each_block(blocks, [&](const BlockPlace& place) { used.insert(grid().number_of(level, place)); });
     if (level < grid().coarsest())
@@ -56,7 +56,7 @@ class TypedVolume : public HierarchicalVolume {
           used);
   }
 
-  /// Has these blocks of a level decoded.
+  /// Makes sure that these blocks of a level are decoded.
   void decode(int level, const TexelBox& blocks) {
     std::vector<BlockPlace> missing;
     TexelBox around;
@@ -116,7 +116,7 @@ class TypedVolume : public HierarchicalVolume {
     return true;
   }
 
-  /// From the next coarser level, whose last samples stand for those beyond it.
+  /// Takes the even points from the next coarser level, whose outermost samples are repeated beyond its end.
   void put_even_points(int level, const TexelBox& own, const BlockExtent& extent,
                        std::vector<Sample>& points) const {
     const std::array<int, 3> end = grid().size(level + 1);
@@ -140,7 +140,7 @@ class TypedVolume : public HierarchicalVolume {
         }
   }
 
-  std::map<std::size_t, std::vector<Sample>> decoded_;  ///< by the block's number: those of the last box
+  std::map<std::size_t, std::vector<Sample>> decoded_;  ///< the blocks needed for the last box, by number
 };
 
 }  // namespace
@@ -180,7 +180,7 @@ std::unique_ptr<HierarchicalVolume> open_hierarchical(const std::string& path, c
 
 namespace {
 
-/// Of the scalars between two.
+/// The values of the scalars from `low` to `high`.
 std::array<double, 2> values_between(const FileDescription& description, double low, double high) {
   const double a = description.offset + description.scale * low;
   const double b = description.offset + description.scale * high;
@@ -220,7 +220,7 @@ class OneLevel : public VolumeFile {
     for_each_block(blocks_around(box), [&](const BlockPlace& place) {
       const HierarchicalBlock& block = volume_->block(volume_->grid().number_of(level_, place));
       if (block.low > block.high) return;
-      // A sample is as far from its scalar as coding has let it, here or where a coarser level has it from.
+      // Encoding errors are at most half a quantum in this block, and max_error in samples of coarser levels.
       const double off = std::max(block.quantum / 2, volume_->header().max_error);
       low = std::min(low, block.low - off);
       high = std::max(high, block.high + off);
@@ -229,12 +229,12 @@ class OneLevel : public VolumeFile {
     return values_between(description(), low, high);
   }
 
-  /// Whole blocks are decoded, with those of coarser levels that they are predicted from.
+  /// Blocks are decoded as a whole, with the blocks of coarser levels from which they are predicted.
   std::size_t memory_to_read(const TexelBox& box) const override {
     const LevelGrid& grid = volume_->grid();
     constexpr std::size_t edge = std::size_t(hierarchy_block_edge);
     TexelBox samples = box;
-    samples.high[2] += hierarchy_block_edge;  // wherever they begin
+    samples.high[2] += hierarchy_block_edge;  // the box may begin anywhere in a block
     std::size_t blocks = 0;
     for (int level = level_; level < grid.levels(); ++level) {
       const TexelBox whole = intersection(blocks_around(samples), {{0, 0, 0}, grid.blocks(level)});
@@ -246,7 +246,7 @@ class OneLevel : public VolumeFile {
       }
       samples = coarser_samples_around(samples, grid.size(level + 1));
     }
-    // And a quarter as many bytes while they are packed.
+    // And a quarter of that for compressed blocks.
     return blocks * edge * edge * edge * bytes_per_scalar(description().type) * 5 / 4;
   }
 

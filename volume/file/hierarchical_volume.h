@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a hierarchical volume (hierarchical_format.h): any box of any level, decoding no more than the blocks
-// that it needs of that level and of the coarser ones.
+// Reads a hierarchical volume (hierarchical_format.h): any box of any level, decoding only the blocks of that
+// level and of coarser ones that are needed.
 #pragma once
 
 #include <memory>
@@ -21,10 +21,10 @@ class HierarchicalVolume : public VolumeFile {
   const HierarchicalHeader& header() const { return header_; }
   const HierarchicalBlock& block(std::size_t number) const { return blocks_[number]; }
 
-  /// The largest difference between a scalar of the volume and what `level` gives there, as of the table.
+  /// The largest difference between a scalar of the volume and the interpolation of `level`, from the table.
   double error_of_level(int level) const;
 
-  /// The scalars of `box` of a level, as read(). Throws FileError.
+  /// Reads the scalars of `box` in a level, like read(). Throws FileError.
   virtual void read_level(int level, const TexelBox& box, std::span<std::byte> scalars) = 0;
   void read(const TexelBox& box, std::span<std::byte> scalars) final { read_level(0, box, scalars); }
   std::uint64_t bytes_read() const final { return file_->bytes_from_file(); }
@@ -42,7 +42,7 @@ class HierarchicalVolume : public VolumeFile {
 /// Reads the header and the table of blocks. Throws FileError.
 std::unique_ptr<HierarchicalVolume> open_hierarchical(const std::string& path, const ReadableFiles& files = {});
 
-/// One level as a volume of its own. Throws FileError, also where the volume has no such level.
+/// Opens one level as a volume of its own. Throws FileError, also if there is no such level.
 std::unique_ptr<VolumeFile> open_level(const std::string& path, int level, const ReadableFiles& files = {});
 
 }  // namespace understudy::volume

@@ -21,7 +21,7 @@
 namespace understudy::volume {
 namespace {
 
-/// So many slices of blocks each.
+/// Ranges of slices, each one block high.
 std::vector<std::array<int, 2>> layers(int depth) {
   std::vector<std::array<int, 2>> found;
   for (int low = 0; low < depth; low += hierarchy_block_edge)
@@ -29,7 +29,7 @@ std::vector<std::array<int, 2>> layers(int depth) {
   return found;
 }
 
-/// Of a Quantiser that keeps `error`, in scalars; 0: without loss.
+/// Quantum for a Quantiser with at most this error, in scalars; 0: lossless.
 template <typename Sample>
 double quantum_of(double error) {
   if constexpr (std::is_floating_point_v<Sample>) return 2 * error;
@@ -81,7 +81,8 @@ class HierarchyWriter {
   Samples<Sample> slices(int low, int high, int step);
   Samples<Sample> every_second(const Samples<Sample>& finer) const;
   void write_coarsest(const Samples<Sample>& samples);
-  /// The blocks of a level that lie in these slices of `samples`, which become what a reader will have.
+  /// Writes the blocks of a level in these slices of `samples`, and replaces the samples by their decoded
+  /// values.
   void write_blocks(int level, const Samples<Sample>& coarser, std::array<int, 2> slices,
                     Samples<Sample>& samples);
   CodedBlock coded(int level, const BlockPlace& place, const Samples<Sample>& coarser,
@@ -103,7 +104,7 @@ class HierarchyWriter {
   PartFile file_;
 };
 
-/// Every `step`-th slice from `low` on, under its number divided by `step`.
+/// Reads every `step`-th slice from `low` on; slice z gets the index z / step.
 template <typename Sample>
 Samples<Sample> HierarchyWriter<Sample>::slices(int low, int high, int step) {
   const auto [width, height, depth] = grid_.size(0);
@@ -142,7 +143,7 @@ void HierarchyWriter<Sample>::write_coarsest(const Samples<Sample>& samples) {
   file_.append(packed);
 }
 
-/// The least and the greatest of them that are numbers.
+/// Records the least and the greatest sample, ignoring NaN.
 template <typename Sample>
 void note_range(std::span<const Sample> samples, HierarchicalBlock& entry) {
   double low = std::numeric_limits<double>::infinity();
@@ -158,8 +159,8 @@ void note_range(std::span<const Sample> samples, HierarchicalBlock& entry) {
   }
 }
 
-/// By how much the samples of a block differ from the interpolation of its even points; infinite where some
-/// are no finite numbers.
+/// The largest difference between the samples of a block and the interpolation of its even points; infinite if
+/// some are not finite.
 template <typename Sample>
 double distance_from_interpolation(const BlockExtent& extent, std::span<const Sample> points) {
   std::vector<double> smooth(points.begin(), points.end());
@@ -229,7 +230,7 @@ void HierarchyWriter<Sample>::write_blocks(int level, const Samples<Sample>& coa
   }
 }
 
-/// Ranges are of the volume's own scalars.
+/// Ranges cover the volume's own scalars.
 template <typename Sample>
 void HierarchyWriter<Sample>::gather_ranges() {
   for (int level = 0; level < grid_.coarsest(); ++level)
@@ -254,13 +255,13 @@ double HierarchyWriter<Sample>::largest_error_of(int level, TexelBox blocks,
   return most;
 }
 
-/// From level to level errors add up. Between two levels both interpolations are trilinear on each cell of the
-/// finer one, so that the corners of the cell tell how far they are apart: some of these are samples of the
-/// blocks behind.
+/// Errors add up from level to level. Between two levels, both interpolations are trilinear on each cell of the
+/// finer one, so the corners of the cells bound their difference; some of these corners are samples of the next
+/// blocks.
 template <typename Sample>
 void HierarchyWriter<Sample>::gather_errors() {
   const HierarchicalBlock& all = blocks_.front();
-  // Whatever is interpolated lies among the volume's own values.
+  // Interpolated values lie within the range of the volume's own.
   const double range = all.low <= all.high ? all.high - all.low + error_of<Sample>(quantum_) : 0;
   std::vector<double> between_levels(blocks_.size());
   std::vector<double> errors(blocks_.size());
@@ -303,7 +304,7 @@ HierarchyFigures HierarchyWriter<Sample>::figures() const {
 
 template <typename Sample>
 HierarchyFigures HierarchyWriter<Sample>::write() {
-  constexpr double reading = 0.15;  // of the work
+  constexpr double reading = 0.15;  // fraction of the work
   const std::vector<std::byte> no_blocks_yet(std::size_t(blocks_begin(grid_)));
   file_.append(no_blocks_yet);
   const int depth = grid_.size(0)[2];
@@ -312,7 +313,7 @@ HierarchyFigures HierarchyWriter<Sample>::write() {
     note_range<Sample>(all.values, blocks_.front());
     write_coarsest(all);
   } else {
-    std::vector<Samples<Sample>> levels;  // from 1 on
+    std::vector<Samples<Sample>> levels;  // from level 1 on
     levels.emplace_back(TexelBox{{0, 0, 0}, grid_.size(1)});
     for (const auto& [low, high] : layers(depth)) {
       const Samples<Sample> some = slices(low, high, 2);

@@ -20,7 +20,7 @@ namespace understudy::volume {
 
 namespace {
 
-// Sequences of ultrasound (PLUS) have some lines for each of their frames.
+// Ultrasound sequences (PLUS) have several header lines per frame.
 constexpr std::size_t most_header_bytes = std::size_t(1) << 22;
 constexpr std::size_t header_part_bytes = std::size_t(1) << 16;
 constexpr std::int64_t most_skipped = std::int64_t(1) << 40;
@@ -32,7 +32,7 @@ bool is_true(const std::string& flag) {
 
 struct MetaImageHeader {
   HeaderFields fields;
-  std::uint64_t bytes = 0;  ///< with the last line's end
+  std::uint64_t bytes = 0;  ///< including the last line's end
 
   std::vector<std::string> words(const char* name) const { return words_of(fields.text(name), most_axes); }
 
@@ -42,7 +42,7 @@ struct MetaImageHeader {
   }
 };
 
-/// Lines "name = value". The last one names the data, which may begin behind it.
+/// Parses lines "name = value". The last one names the data, which may follow it directly.
 MetaImageHeader header_of(ByteSource& file) {
   MetaImageHeader header{HeaderFields("MetaImage", file.path())};
   std::string text;
@@ -95,7 +95,7 @@ FileDescription description_of(const MetaImageHeader& header, const std::string&
       std::size_t(header.fields.integer("NDims", header.fields.required("NDims"), 2, std::int64_t(most_axes)));
   if (lengths.size() != axes)
     header.fields.fail(fmt::format("it has {} axes but {} sizes; check its header", axes, lengths.size()));
-  // ElementSize is that of what a detector sees, and stands for the spacing where that is not said.
+  // ElementSize is the size of a detector element, and is used if the spacing is not specified.
   std::vector<std::string> spacing = header.words("ElementSpacing");
   if (spacing.empty()) spacing = header.words("ElementSize");
   std::array<std::int64_t, most_axes> size{1, 1, 1, 1};
@@ -112,7 +112,7 @@ FileDescription description_of(const MetaImageHeader& header, const std::string&
   return description;
 }
 
-/// Where the scalars of all time steps lie: in the file itself, or in another one beside it.
+/// Finds the scalars of all time steps: in the file itself, or in another one next to it.
 DenseScalars scalars_of(const MetaImageHeader& header, std::unique_ptr<ByteSource> file,
                         const ReadableFiles& files) {
   DenseScalars scalars;
@@ -126,7 +126,7 @@ DenseScalars scalars_of(const MetaImageHeader& header, std::unique_ptr<ByteSourc
       header.fields.fail("its data lies in several files; join them first");
     file = open_file(std::filesystem::path(file->path()).parent_path() / data, files);
   }
-  // Counted from where the file begins, also in a file with a header.
+  // HeaderSize is counted from the beginning of the file, even if the file has a header.
   const std::string skip_text = header.fields.text("HeaderSize");
   const std::int64_t skip =
       skip_text.empty() ? 0 : header.fields.integer("HeaderSize", skip_text, -1, most_skipped);

@@ -23,7 +23,7 @@ constexpr double largest_offset = 1e12;
   throw FileError(fmt::format("{}: not a readable NIfTI file: {}", path, what));
 }
 
-/// Fields of the header by their place, in the byte order of its writer.
+/// Reads fields of the header by their offset, in the byte order of its writer.
 class NiftiHeader {
  public:
   explicit NiftiHeader(ByteSource& file) {
@@ -82,7 +82,7 @@ ScalarType type_of(int code, const std::string& path) {
   return found->second;
 }
 
-/// "a.hdr.gz" for "a.img.gz", and the other way round.
+/// "a.hdr.gz" for "a.img.gz", and vice versa.
 std::string with_part(std::string path, std::string_view from, std::string_view to) {
   const std::size_t at = path.size() - (has_extension(path, ".gz") ? 3 : 0) - from.size();
   const bool capitals = path[at + 1] >= 'A' && path[at + 1] <= 'Z';
@@ -142,7 +142,7 @@ std::unique_ptr<VolumeFile> open_nifti(const std::string& path, int time_step, c
   if (!(data_offset >= 0 && data_offset <= largest_offset))
     fail_nifti(path, fmt::format("its data would begin at byte {}; get the file again", data_offset));
 
-  // Some writers leave the lengths of axes that are not there at 0.
+  // Some writers set the lengths of absent axes to 0.
   description.time_steps = dim[0] < 4 ? 1 : checked_time_steps(std::max<std::int64_t>(dim[4], 1), path);
 
   DenseScalars scalars;

@@ -12,8 +12,7 @@ namespace understudy::volume {
 /// By the name.
 bool is_nifti(const std::string& path);
 
-/// The volume at `time_step` along the fourth axis, and at the first place along each axis behind it. Throws
-/// FileError.
+/// Opens the volume at `time_step` along the fourth axis, and at index 0 of any further axis. Throws FileError.
 std::unique_ptr<VolumeFile> open_nifti(const std::string& path, int time_step = 0,
                                        const ReadableFiles& files = {});
 

@@ -37,10 +37,10 @@ std::string lower(std::string text) {
 
 struct NrrdHeader {
   HeaderFields fields;
-  std::uint64_t bytes = 0;  ///< with the empty line at its end
+  std::uint64_t bytes = 0;  ///< including the empty line at its end
 };
 
-// Of a detached header the file's end ends it as well.
+// A detached header may also end at the end of the file.
 NrrdHeader read_header(ByteSource& file) {
   std::string text(std::min<std::size_t>(max_header_bytes, std::size_t(file.size().value_or(max_header_bytes))),
                    ' ');
@@ -119,7 +119,7 @@ ScalarType type_of(const HeaderFields& fields, const std::string& path) {
   return found->second;
 }
 
-/// "(0.5,0,0) (0,0.5,0) none" as lengths; "none" is not a number.
+/// Parses "(0.5,0,0) (0,0.5,0) none" as lengths; "none" becomes NaN.
 std::vector<double> lengths_of(const std::string& directions) {
   std::vector<double> lengths;
   for (std::size_t at = 0; at < directions.size() && lengths.size() <= max_axes;) {
@@ -145,8 +145,8 @@ std::vector<double> lengths_of(const std::string& directions) {
 struct Axis {
   std::int64_t extent = 1;
   double spacing = 1;
-  bool is_time = false;        ///< its kind says so
-  bool may_be_space = true;    ///< its kind says so, or nothing
+  bool is_time = false;        ///< according to its kind
+  bool may_be_space = true;    ///< according to its kind, or without one
   bool has_direction = false;  ///< in space
 };
 
@@ -170,7 +170,7 @@ std::vector<Axis> axes_of(const HeaderFields& fields) {
     axes[k].extent = fields.integer("sizes", sizes[k], 0, std::numeric_limits<std::int64_t>::max());
     if (k < distances.size()) axes[k].spacing = believable_spacing(distances[k]);
     const std::string kind = k < kinds.size() ? kinds[k] : "none";
-    // 3D Slicer calls the axis of its time series a list.
+    // 3D Slicer gives the axis of a time series the kind "list".
     axes[k].is_time = kind == "time" || kind == "list";
     axes[k].may_be_space = kind == "none" || kind == "???" || kind == "domain" || kind == "space";
     axes[k].has_direction = directions.empty() || (k < distances.size() && !std::isnan(distances[k]));
@@ -183,7 +183,7 @@ struct TimeAxis {
   bool is_fastest;
 };
 
-/// Where whole volumes follow each other, if they do; of four axes or more.
+/// Finds the axis along which whole volumes follow each other, if any; for four or more axes.
 std::optional<TimeAxis> time_axis(const std::vector<Axis>& axes, const HeaderFields& fields) {
   const Axis& last = axes.back();
   const std::size_t end = axes.size() - 1;
@@ -274,7 +274,7 @@ std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, int time_step, co
   if (!data.empty()) {
     if (data.starts_with("LIST") || data.find('%') != std::string::npos)
       fail_nrrd(path, "its data lies in several files; join them first, for example with `unu save -f nrrd`");
-    // Beside the header, unless the name is absolute.
+    // Relative to the header's folder, unless the name is absolute.
     file = open_file(std::filesystem::path(path).parent_path() / data, files);
     scalars.offset = 0;
   }

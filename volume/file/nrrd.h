@@ -13,9 +13,9 @@ namespace understudy::volume {
 /// By the first bytes.
 bool is_nrrd(const std::string& path, const ReadableFiles& files = {});
 
-/// A scalar volume of three axes, at `time_step` along a first or last axis of time: its kind is time or list,
-/// or it is the last, and nothing says of any axis what it is. Other axes do not count where their length is 1.
-/// Throws FileError.
+/// Opens a scalar volume of three axes, at `time_step` along a time axis. That is a first or last axis of kind
+/// time or list, a last axis without a direction in space, or the last axis if no field tells them apart. Other
+/// axes of length 1 are ignored. Throws FileError.
 std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, int time_step = 0,
                                       const ReadableFiles& files = {});
 

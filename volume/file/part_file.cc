@@ -17,12 +17,12 @@ namespace understudy::volume {
 
 PartFile::PartFile(const std::string& path) : path_(path) {
   std::error_code none;
-  // What a link leads to is replaced, not the link.
+  // Replaces the target of a symbolic link, not the link itself.
   if (std::filesystem::is_symlink(path, none)) path_ = std::filesystem::weakly_canonical(path, none);
   if (std::filesystem::exists(path_, none) && !std::filesystem::is_regular_file(path_, none))
     throw FileError(
         fmt::format("{}: cannot be written: it is there and no plain file; give another name", path));
-  // Others may write in the folder, too: a name that they cannot guess.
+  // Others may have write access to the folder, so the name must not be predictable.
   std::uint64_t random = 0;
   if (getrandom(&random, sizeof random, 0) != ssize_t(sizeof random)) fail();
   beside_ = fmt::format("{}.{:016x}.part", path_, random);
@@ -33,7 +33,7 @@ PartFile::PartFile(const std::string& path) : path_(path) {
   has_name_ = true;
 }
 
-/// Where the file system can: if this process is killed, nothing is left.
+/// If the file system supports it: nothing is left behind if this process is killed.
 void PartFile::open_without_name() {
   const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
   constexpr mode_t as_umask_says = 0666;
@@ -63,7 +63,7 @@ void PartFile::replace(std::uint64_t at, std::span<const std::byte> bytes) {
 void PartFile::finish() {
   if (std::fflush(file_.get()) != 0 || fsync(fileno(file_.get())) != 0) fail();
   if (!has_name_) {
-    // A link never replaces a file, so that the name is a new one first.
+    // linkat() cannot replace a file, so the file gets a temporary name first.
     const std::string self = fmt::format("/proc/self/fd/{}", fileno(file_.get()));
     if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, beside_.c_str(), AT_SYMLINK_FOLLOW) != 0) fail();
     has_name_ = true;

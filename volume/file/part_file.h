@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file that has its name only once it is whole: until then it has none, or, where the file system must have
-// one, lies beside it under a name of its own, and is removed if it never becomes whole.
+// A file that gets its name only when it is complete. Until then it has no name, or, if the file system
+// requires one, a temporary name in the same folder; it is removed if it is never completed.
 #pragma once
 
 #include <cstddef>
@@ -20,9 +20,9 @@ class PartFile {
   PartFile& operator=(const PartFile&) = delete;
   ~PartFile();
 
-  /// Behind what was written before.
+  /// Writes after everything written so far.
   void append(std::span<const std::byte> bytes);
-  /// In the place of what was written there.
+  /// Overwrites what was written there.
   void replace(std::uint64_t at, std::span<const std::byte> bytes);
   std::uint64_t size() const { return size_; }
   /// Gives the file its name. Nothing may be written afterwards.
@@ -37,8 +37,8 @@ class PartFile {
   [[noreturn]] void fail() const;
 
   std::string path_;
-  std::string beside_;     ///< the name that it has until it is whole
-  bool has_name_ = false;  ///< `beside_`
+  std::string beside_;     ///< temporary name in the same folder
+  bool has_name_ = false;  ///< whether the file has the name `beside_`
   std::unique_ptr<std::FILE, Close> file_;
   std::uint64_t size_ = 0;
 };

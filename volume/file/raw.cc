@@ -38,7 +38,7 @@ void take_type(std::string_view word, FileHints& hints) {
   if (hints.type) hints.big_endian = order == "be";
 }
 
-// A wrong length is usually a wrong type: say which one the file's length speaks for.
+// A wrong length usually means a wrong type: suggests the type that matches the file's length.
 std::string advice_for(const std::array<int, 3>& size, ScalarType type, std::optional<std::uint64_t> found) {
   std::string advice = fmt::format("{} x {} x {} scalars of {} were expected: check the size and the type",
                                    size[0], size[1], size[2], name_of(type));

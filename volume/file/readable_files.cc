@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whoever opens a pipe would wait for its other end.
+// Without O_NONBLOCK, opening a pipe would wait for its other end.
 constexpr int to_read = O_RDONLY | O_CLOEXEC | O_NONBLOCK;
 
 class Folder {
@@ -46,7 +46,7 @@ class Folder {
   }
 
   int number() const { return number_; }
-  /// `path` from here on; nothing where it lies elsewhere.
+  /// `path` relative to this folder; empty if it lies elsewhere.
   std::optional<std::string> rest_of(const std::string& path) const {
     for (const std::string& name : {given_, real_}) {
       if (path.starts_with(name) && path.size() > name.size()) return path.substr(name.size());
@@ -82,7 +82,7 @@ namespace {
 
 }  // namespace
 
-/// -1 and errno where it cannot be.
+/// Returns -1 and sets errno if the file cannot be opened.
 int ReadableFiles::opened(const std::string& path) const {
   errno = 0;
   return folders_ ? open_in_folders(path) : ::open(path.c_str(), to_read);
@@ -114,7 +114,7 @@ bool ReadableFiles::is_folder(const std::string& path) const {
     ::close(file);
     return is_folder;
   } catch (const FileError&) {
-    return false;  // whoever reads it says why
+    return false;  // reading it will report the reason
   }
 }
 
@@ -139,7 +139,7 @@ int open_beneath(int folder, const std::string& path) {
   open_how how{};
   how.flags = to_read;
   how.resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS;
-  constexpr int attempts = 16;  // EAGAIN: something was renamed meanwhile
+  constexpr int attempts = 16;  // EAGAIN: a concurrent rename
   for (int i = 0; i < attempts; ++i) {
     const long file = ::syscall(SYS_openat2, folder, path.c_str(), &how, sizeof how);
     if (file >= 0) return int(file);
@@ -153,10 +153,10 @@ int open_beneath_by_walking(int folder, const std::string& path) {
   int here = ::fcntl(folder, F_DUPFD_CLOEXEC, 0);
   const fs::path way(path);
   for (auto part = way.begin(); part != way.end() && here >= 0; ++part) {
-    if (part->empty()) continue;  // behind a slash at the end
+    if (part->empty()) continue;  // after a trailing slash
     const bool last =
         std::all_of(std::next(part), way.end(), [](const fs::path& after) { return after.empty(); });
-    // A link that is opened as a folder without being followed is none (ENOTDIR).
+    // With these flags, a symbolic link in place of a folder fails with ENOTDIR.
     const int flags = last ? to_read | O_NOFOLLOW : O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
     const bool leaves = *part == ".." || part->is_absolute();
     const int next = leaves ? -1 : ::openat(here, part->c_str(), flags);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which files volumes may be read from. Who asks for a volume need not be who runs the process that reads it.
+// The files that volumes may be read from. The user who requests a volume need not run the process that reads
+// it.
 #pragma once
 
 #include <memory>
@@ -11,15 +12,15 @@ namespace understudy::volume {
 
 class ReadableFiles {
  public:
-  /// All that this process may read.
+  /// All files that this process may read.
   ReadableFiles() = default;
-  /// Those beneath `folders`, and of none of them what a link leads out of it. Folders are opened now, so that
-  /// a name that changes its meaning later changes nothing here. Throws FileError for one that cannot be.
+  /// Only files beneath `folders`; links that lead out of a folder are not followed. Folders are opened now, so
+  /// later changes of names have no effect. Throws FileError if one cannot be opened.
   explicit ReadableFiles(std::span<const std::string> folders);
 
-  /// A descriptor to read the file by. Throws FileError; of files elsewhere it does not tell whether they are.
+  /// A descriptor for reading the file. Throws FileError, which does not reveal whether other files exist.
   int open(const std::string& path) const;
-  /// The same; -1 where there is no such file. A link to one is an error.
+  /// The same; -1 if there is no such file. A dangling link is an error.
   int open_if_there(const std::string& path) const;
   /// Whether `path` is a folder that may be read.
   bool is_folder(const std::string& path) const;
@@ -33,11 +34,11 @@ class ReadableFiles {
   std::shared_ptr<const Folders> folders_;  ///< null: all files
 };
 
-/// Opens `path`, a relative one, to be read, if it lies beneath `folder` and no link leads out. -1 and errno
-/// where it does not; EXDEV and ELOOP mean that it leads elsewhere.
+/// Opens the relative `path` for reading, if it lies beneath `folder` and no link leads out. Otherwise returns
+/// -1 and sets errno; EXDEV and ELOOP mean that it leads elsewhere.
 int open_beneath(int folder, const std::string& path);
 
-/// The same for kernels without openat2 (before 5.6, or forbidden in a container): no link is followed at all.
+/// The same for kernels without openat2 (before 5.6, or forbidden in a container): follows no links.
 int open_beneath_by_walking(int folder, const std::string& path);
 
 }  // namespace understudy::volume

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scalar types that hierarchical volumes hold, as types of the language.
+// Maps the scalar types that hierarchical volumes support to C++ types.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace understudy::volume {
 
-/// Calls `visit` with a value of that type. False for types that are not held: 64-bit integers.
+/// Calls `visit` with a value of that type. Returns false for unsupported types: 64-bit integers.
 template <typename Visit>
 bool with_sample_type(ScalarType type, Visit&& visit) {
   switch (type) {

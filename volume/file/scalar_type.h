@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scalars as files have them.
+// Scalar types of files.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ std::size_t bytes_per_scalar(ScalarType type);
 /// "u8", "i8", ... "f64".
 std::string_view name_of(ScalarType type);
 
-/// By these names or the long ones: "uint8", "int16", "float32", "float64".
+/// Accepts these names and the long ones: "uint8", "int16", "float32", "float64".
 std::optional<ScalarType> scalar_type_named(std::string_view name);
 
 }  // namespace understudy::volume

@@ -18,7 +18,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// The digits at `at`, without zeros in front.
+/// The digits at `at`, without leading zeros.
 std::string_view number_at(const std::string& text, std::size_t at) {
   const std::size_t end = std::min(text.size(), text.find_first_not_of("0123456789", at));
   const std::size_t first = std::min(end, text.find_first_not_of('0', at));

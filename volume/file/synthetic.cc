@@ -25,7 +25,7 @@ constexpr float pi = std::numbers::pi_v<float>;
 
 enum class Kind { shells, lobes, gyroid };
 
-/// A function of each coordinate along one axis, at the texel centres `low` to `high` of `size`.
+/// Evaluates a function of one coordinate at the texel centres `low` to `high` of `size`.
 std::vector<float> along(int low, int high, int size, const std::function<float(float)>& function) {
   std::vector<float> values;
   values.reserve(std::size_t(high - low));
@@ -33,8 +33,8 @@ std::vector<float> along(int low, int high, int size, const std::function<float(
   return values;
 }
 
-/// Values from 0 to 1, a row of texels at a time. What a row's texels have in common, and what depends on one
-/// axis alone, is computed once.
+/// Values from 0 to 1, one row of texels at a time. Terms that are common to a row, or that depend on one axis
+/// only, are computed once.
 class Field {
  public:
   Field(Kind kind, const TexelBox& box, const std::array<int, 3>& size) : kind_(kind), box_(box) {
@@ -65,7 +65,7 @@ class Field {
     switch (kind_) {
       case Kind::shells:
         for (std::size_t x = 0; x < to.size(); ++x) {
-          // A shell at each of four radii, denser further out, and nothing between them.
+          // A shell at each of four radii, with values increasing outwards, and zero between them.
           const float radius = std::sqrt(first_[0][x] + fy + fz);
           const float shell = std::round(radius * 5);
           const float off = std::abs(radius * 5 - shell) * 8;
@@ -92,7 +92,7 @@ class Field {
   Kind kind_;
   TexelBox box_;
   std::array<std::vector<float>, 3> first_, second_;
-  std::vector<float> plane_;  // of lobes: what x and y decide together
+  std::vector<float> plane_;  // of lobes: the terms that depend on both x and y
 };
 
 template <typename Texel>

@@ -33,7 +33,7 @@ TexelType natural_type(ScalarType type) {
   }
 }
 
-/// The least and the greatest scalar of an integer type that has as many as texels go.
+/// The least and the greatest scalar of an integer type that has no more bits than texels.
 std::optional<std::array<double, 2>> whole_range(ScalarType type) {
   switch (type) {
     case ScalarType::u8:
@@ -179,7 +179,7 @@ void TexelStream::convert_to(std::span<const std::byte> scalars) {
   const std::size_t count = scalars.size() / sizeof(Scalar);
   const FileDescription& file = file_->description();
   if constexpr (std::is_same_v<Scalar, Texel> && !std::is_same_v<Texel, float>) {
-    // Nothing is to be computed where texels are the file's own scalars.
+    // Copies the scalars if texels are the same as the file's scalars.
     if (mapping_.scale == file.scale && mapping_.offset == file.offset) {
       std::memcpy(texels_.data(), scalars.data(), scalars.size());
       Texel low = std::numeric_limits<Texel>::max(), high = 0;
@@ -204,7 +204,7 @@ void TexelStream::convert_to(std::span<const std::byte> scalars) {
     Texel texel{};
     double meant = 0;
     if constexpr (std::is_same_v<Texel, float>) {
-      texel = float(std::clamp(value, -largest, largest));  // keeps NaN
+      texel = float(std::clamp(value, -largest, largest));  // NaN stays NaN
       meant = double(texel);
     } else {
       const double place = (value - mapping_.offset) / mapping_.scale;

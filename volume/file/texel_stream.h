@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A box of a volume file as texels, slice range by slice range: what a rank reads of a volume is its own box
-// and nothing else.
+// Reads a box of a volume file as texels, slice range by slice range. A rank reads only its own box.
 #pragma once
 
 #include <array>
@@ -16,36 +15,36 @@
 
 namespace understudy::volume {
 
-/// What a texel means: the value offset + scale * texel, the texel in units of its type (u8: 0 to 255, u16: 0
-/// to 65535, float: itself).
+/// The value of a texel is offset + scale * texel, with the texel in units of its type (u8: 0 to 255, u16: 0 to
+/// 65535, float: itself).
 struct TexelMapping {
   TexelType type = TexelType::u8;
   double scale = 1;
   double offset = 0;
 
-  /// The texel of a value, normalised as transfer functions want it (u8: divided by 255).
+  /// The texel of a value, normalised as for transfer functions (u8: divided by 255).
   double normalised(double value) const;
 };
 
-/// How the scalars of a file become texels.
+/// How the scalars of a file are converted to texels.
 struct TexelChoice {
-  /// None: u8 and i8 become u8, u16 and i16 become u16, both exactly; all others become f32, rounded.
+  /// Unset: u8 and i8 become u8, u16 and i16 become u16, both exactly; all others become f32, rounded.
   std::optional<TexelType> type;
-  /// These values become the least and the greatest texel of u8 or u16, and what lies outside is clamped. None:
-  /// the whole range of an integer type.
+  /// Maps these values to the least and the greatest texel of u8 or u16, and clamps values outside. Unset: the
+  /// whole range of an integer type.
   std::optional<std::array<double, 2>> range;
 
   bool operator==(const TexelChoice&) const = default;
 };
 
-/// Throws FileError where the choice cannot be made (colours, an empty range, floats as u8 without a range).
+/// Throws FileError for an impossible choice (colours, an empty range, floats as u8 without a range).
 TexelMapping mapping_of(const FileDescription& file, const TexelChoice& choice);
 
-/// Of the texels that have come so far.
+/// Statistics of the texels converted so far.
 struct TexelFigures {
-  double low = 0;  ///< least and greatest value; low > high when there was none
+  double low = 0;  ///< least and greatest value; low > high if there was none
   double high = -1;
-  double largest_error = 0;  ///< between a value and that of its texel
+  double largest_error = 0;  ///< between a value and the value of its texel
   std::uint64_t not_numbers = 0;
 };
 
@@ -61,15 +60,15 @@ class TexelStream {
   std::uint64_t bytes_read() const { return file_->bytes_read(); }
   const TexelFigures& figures() const { return figures_; }
 
-  /// Of a compressed file, passes over up to `max_bytes` of those before the next slices; true: none are left.
-  /// So next() can be kept from passing over all of them at once. Throws FileError.
+  /// For compressed files, skips up to `max_bytes` of the bytes before the next slices; returns true when none
+  /// are left. Prevents next() from skipping all of them at once. Throws FileError.
   bool approach(std::uint64_t max_bytes);
 
   struct SliceSegment {
     TexelBox box;
     std::span<const std::byte> texels;  ///< valid until the next call
   };
-  /// The next slices of the box: as many as `max_bytes` of the file's scalars hold, one at least. Throws
+  /// The next slices of the box: as many as fit into `max_bytes` of the file's scalars, at least one. Throws
   /// FileError.
   SliceSegment next(std::size_t max_bytes);
 

@@ -22,17 +22,17 @@ void swap_byte_order(std::span<std::byte> bytes, std::size_t scalar) {
     std::reverse(bytes.begin() + std::ptrdiff_t(at), bytes.begin() + std::ptrdiff_t(at + scalar));
 }
 
-/// Of which time step a message is, in a file of several.
+/// Names the time step in messages about files with several.
 std::string words_on_time_step(const FileDescription& description, const DenseScalars& scalars) {
   return description.time_steps > 1 ? fmt::format(" of time step {}", scalars.time_step) : "";
 }
 
-/// Of places whose time steps lie together, so much is read at once: of one place at least.
+/// If the time steps of a texel are stored together, this much is read at once, but at least one texel's.
 constexpr std::size_t piece_bytes = std::size_t(1) << 20;
 
 class DenseVolume : public VolumeFile {
  public:
-  /// `bytes` are those from the scalars' offset on that its time step lies in.
+  /// `bytes`: size of the data from the scalars' offset on that contains the time step.
   DenseVolume(const FileDescription& description, DenseScalars scalars, std::uint64_t bytes)
       : VolumeFile(description),
         scalars_(std::move(scalars)),
@@ -44,7 +44,7 @@ class DenseVolume : public VolumeFile {
     const std::array<int, 3>& size = description().size;
     if (!contains({{0, 0, 0}, size}, box) || scalars.size() != texels_in(box) * scalar_)
       throw FileError(fmt::format("{}: a part was asked for that the volume does not have", path()));
-    // What lies together is read together.
+    // Contiguous rows and slices are read at once.
     const bool rows = box.low[0] == 0 && box.high[0] == size[0];
     const bool slices = rows && box.low[1] == 0 && box.high[1] == size[1];
     const int row_step = rows ? box.high[1] - box.low[1] : 1,
@@ -78,7 +78,7 @@ class DenseVolume : public VolumeFile {
  private:
   const std::string& path() const { return scalars_.bytes->path(); }
 
-  /// Counted from the volume's first scalar, x fastest.
+  /// Index of a scalar, counted from the volume's first one, x fastest.
   std::uint64_t number_of(const std::array<int, 3>& place) const {
     const std::array<int, 3>& size = description().size;
     return (std::uint64_t(place[2]) * std::uint64_t(size[1]) + std::uint64_t(place[1])) *
@@ -95,7 +95,7 @@ class DenseVolume : public VolumeFile {
                                   scalars_.advice));
   }
 
-  /// Of each place from `first` on, the scalar of the time step.
+  /// Reads the time step's scalar of each place from `first` on.
   void fetch_of_places(std::uint64_t first, std::span<std::byte> to) {
     const std::size_t in_all = to.size() / scalar_;
     const std::size_t at_once = std::max<std::size_t>(1, std::min(piece_bytes / place_, in_all));
@@ -111,7 +111,7 @@ class DenseVolume : public VolumeFile {
   }
 
   void expect_end() {
-    // Of a plain file the length was compared when it was opened.
+    // For a plain file, the length was checked when it was opened.
     if (scalars_.bytes->size()) return;
     std::byte one_more{};
     if (scalars_.bytes->read(scalars_.offset + bytes_, {&one_more, 1}) > 0)

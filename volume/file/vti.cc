@@ -51,7 +51,7 @@ class Lengths {
 ZlibBlockTable read_block_table(Lengths lengths, std::uint64_t bytes, const std::string& path) {
   const std::vector<std::uint64_t> head = lengths.read(0, 3);
   const std::uint64_t blocks = head[0], block_bytes = head[1], last = head[2];
-  // An upper bound first, so that the product cannot overflow.
+  // Checks an upper bound first, so that the product cannot overflow.
   if (blocks == 0 || block_bytes == 0 || block_bytes > max_block_bytes || last > block_bytes ||
       blocks > bytes / block_bytes + 1 ||
       (blocks - 1) * block_bytes + (last == 0 ? block_bytes : last) != bytes)
@@ -89,7 +89,7 @@ std::unique_ptr<VolumeFile> open_vti(const std::string& path, const ReadableFile
     description.spacing[axis] = believable_spacing(header.spacing[axis]);
   }
 
-  // Where the numbers in front are, and the data behind them.
+  // The positions of the numbers and of the data behind them.
   const bool base64 = header.encoding == VtiHeader::Encoding::base64;
   std::shared_ptr<ByteSource> front = file;
   std::uint64_t front_at = header.data_at;
@@ -104,7 +104,7 @@ std::unique_ptr<VolumeFile> open_vti(const std::string& path, const ReadableFile
   if (!header.compressed) {
     if (const std::uint64_t length = lengths.read(0, 1)[0]; length != bytes)
       fail(path, fmt::format("its scalars are said to have {} bytes, not {}", length, bytes));
-    // One text holds the number and the data.
+    // Numbers and data are one base64 text.
     scalars.offset = front_at + header.length_bytes;
     scalars.bytes = base64 ? std::unique_ptr<ByteSource>(std::make_unique<Base64Source>(file, header.data_at))
                            : open_file_or_gzip(path, files);
@@ -114,7 +114,7 @@ std::unique_ptr<VolumeFile> open_vti(const std::string& path, const ReadableFile
   const std::uint64_t front_bytes = (2 + table.offsets.size()) * header.length_bytes;
   std::shared_ptr<ByteSource> blocks = file;
   if (base64) {
-    // The numbers are a text of their own, with its padding.
+    // The numbers are a separate base64 text, with its own padding.
     blocks = std::make_shared<Base64Source>(file, header.data_at + (front_bytes + 2) / 3 * 4);
   } else {
     for (std::uint64_t& offset : table.offsets) offset += header.data_at + front_bytes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Image data of VTK in XML: appended (raw, base64) or inline (base64) data, in zlib blocks or as it is.
+// VTK image data in XML: appended (raw, base64) or inline (base64) data, in zlib blocks or uncompressed.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@ namespace understudy::volume {
 /// By the name: .vti or .vti.gz.
 bool is_vti(const std::string& path);
 
-/// The active scalars of the points, or the first array of them that has one component; without one, those of
+/// Opens the active scalars of the points, or their first array with one component; if there is none, those of
 /// the cells. Throws FileError.
 std::unique_ptr<VolumeFile> open_vti(const std::string& path, const ReadableFiles& files = {});
 

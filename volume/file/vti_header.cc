@@ -21,7 +21,7 @@ namespace understudy::volume {
 namespace {
 
 constexpr std::size_t part_bytes = std::size_t(1) << 16;
-/// So much text without a tag or other event makes expat keep it all: no header needs that.
+/// Most text without a tag or other event; expat would keep all of it, and no header needs more.
 constexpr std::uint64_t longest_silence = std::uint64_t(1) << 22;
 
 struct DataArray {
@@ -29,7 +29,7 @@ struct DataArray {
   std::string type;
   std::string format;
   std::int64_t components = 1;
-  std::uint64_t at = 0;  ///< appended: from the mark on; inline: of the text, in the file
+  std::uint64_t at = 0;  ///< appended: relative to the underscore; inline: of the text, in the file
 };
 
 /// The scalars of points or cells.
@@ -93,7 +93,7 @@ class HeaderParser {
     throw FileError(fmt::format("{}: not a readable VTK image file: {}", file_.path(), what));
   }
 
-  /// No exception may pass through expat.
+  /// Prevents exceptions from propagating through expat.
   template <class Call>
   void guarded(Call call) {
     last_event_ = fed_;
@@ -187,7 +187,7 @@ class HeaderParser {
     array.at = array.format == "appended" ? std::uint64_t(integer(text(attributes, "offset"), "an offset"))
                                           : behind_tag();
     section_->arrays.push_back(array);
-    // Appended data may still be a long way off; what stands here may be read at once.
+    // Appended data may be far ahead, but inline data can be read at once.
     const DataArray* chosen = points_.chosen();
     complete_ = chosen != nullptr && chosen->format != "appended";
   }
@@ -225,7 +225,7 @@ class HeaderParser {
     return header_;
   }
 
-  /// The first byte from `at` on that is no white space.
+  /// The first byte from `at` on that is not white space.
   std::uint64_t behind_space(std::uint64_t at) {
     std::array<char, 256> text{};
     const std::size_t got = file_.read(at, std::as_writable_bytes(std::span(text)));

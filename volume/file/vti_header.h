@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the XML of a VTK image file says, up to where its data begins.
+// The XML header of a VTK image file, up to the beginning of its data.
 #pragma once
 
 #include <array>

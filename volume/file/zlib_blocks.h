@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Data in separately compressed blocks, as VTK's XML files have it: any block can be had without the others.
+// Data in separately compressed blocks, as in VTK's XML files: each block can be read without the others.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace understudy::volume {
 
-/// Where the blocks lie and how long they are once they are unpacked.
+/// The positions of the blocks, and their uncompressed sizes.
 struct ZlibBlockTable {
-  std::uint64_t block_bytes = 0;       ///< unpacked, of all but the last
-  std::uint64_t total_bytes = 0;       ///< unpacked, of all together
-  std::vector<std::uint64_t> offsets;  ///< of each block in its source, and of the end behind the last
+  std::uint64_t block_bytes = 0;       ///< uncompressed, of all blocks except the last
+  std::uint64_t total_bytes = 0;       ///< uncompressed, of all blocks
+  std::vector<std::uint64_t> offsets;  ///< of each block in its source, and of the end of the last
 };
 
 class ZlibBlocks : public ByteSource {
@@ -29,7 +29,7 @@ class ZlibBlocks : public ByteSource {
 
   std::shared_ptr<ByteSource> below_;
   ZlibBlockTable table_;
-  std::size_t held_;  ///< the block that is unpacked; none: their number
+  std::size_t held_;  ///< the uncompressed block in memory; none: the number of blocks
   std::vector<std::byte> packed_;
   std::vector<std::byte> unpacked_;
 };

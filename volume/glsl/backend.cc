@@ -24,9 +24,9 @@ namespace understudy::volume::glsl {
 
 namespace {
 
-/// Images of a kind that each side draws before the choice; the first one pays for what is made once.
+/// Images of a kind that each backend draws before the choice; the first one includes one-time costs.
 constexpr int images_measured = 2;
-/// Images of fewer samples say nothing about speed.
+/// Images with fewer samples are not representative of speed.
 constexpr std::uint64_t least_samples = 50000;
 
 constexpr std::array<std::pair<std::string_view, Backend>, 5> names{{{"cpu", Backend::cpu},
@@ -35,7 +35,7 @@ constexpr std::array<std::pair<std::string_view, Backend>, 5> names{{{"cpu", Bac
                                                                      {"gl:osmesa", Backend::osmesa},
                                                                      {"auto", Backend::automatic}}};
 
-/// What decides about speed, as far as a request tells.
+/// The properties of a request that determine which backend is faster.
 struct Kind {
   TexelType type{};
   Operator op{};
@@ -54,7 +54,7 @@ std::string text_of(const Kind& kind) {
                      kind.mostly_empty ? "most blocks empty" : "most blocks visible");
 }
 
-/// Nanoseconds for a sample inside the volume, the best image of each side.
+/// Nanoseconds per sample inside the volume, of the fastest image of each backend.
 struct Speeds {
   int cpu_images = 0, gl_images = 0;
   double cpu = std::numeric_limits<double>::infinity(), gl = cpu;
@@ -82,7 +82,7 @@ struct BackendChooser::Shared {
     if (told.insert(line).second) tell(line);
   }
 
-  /// Null where there is no OpenGL; that has been told.
+  /// Null if OpenGL is unavailable; the reason has been reported then.
   Device* open_device() {
     if (std::exchange(device_tried, true)) return device.get();
     std::string reasons;
@@ -110,7 +110,7 @@ class BackendChooser::Renderer final : public BrickRenderer {
     cpu_->blocks_changed(blocks);
     if (gl_) gl_->blocks_changed(blocks);
   }
-  // OpenGL takes longer for the same samples, but much the same part of it for the same part of them.
+  // OpenGL takes longer for the same samples, but relative costs are about the same.
   void estimate_costs(const RenderRequest& request, std::span<const Rect> tiles,
                       std::span<float> costs) override {
     cpu_->estimate_costs(request, tiles, costs);
@@ -143,7 +143,7 @@ class BackendChooser::Renderer final : public BrickRenderer {
       measured(request, counts, &Speeds::gl, &Speeds::gl_images,
                [&] { gl_->render(request, out, counts, occlusion); });
     } catch (const NoTextureMemory& error) {
-      // Other volumes have it: tried again once there is more.
+      // Other volumes use the memory: retried once more of it is left.
       too_little_ = device->texture_memory().left();
       gl_.reset();
       shared_.tell_once(fmt::format("CPU for volume {}: {}", store_.description().id, error.what()));
@@ -164,7 +164,7 @@ class BackendChooser::Renderer final : public BrickRenderer {
   }
 
   void draw_on_cpu(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion) {
-    // What is hidden costs no time, and would count as samples of next to none while speeds are compared.
+    // Hidden samples cost no time, and would distort the time per sample while speeds are compared.
     const auto found = shared_.speeds.find(kind_of(request));
     if (shared_.wish == Backend::automatic && (found == shared_.speeds.end() || !found->second.gl_is_faster))
       occlusion = nullptr;
@@ -172,8 +172,8 @@ class BackendChooser::Renderer final : public BrickRenderer {
              [&] { cpu_->render(request, out, counts, occlusion); });
   }
 
-  /// Whether the next image of this kind is OpenGL's: those after the CPU's while measuring, and all if it
-  /// was faster.
+  /// Whether OpenGL draws the next image of this kind: while measuring, after the CPU's images; then always if
+  /// it was faster.
   bool wanted(const Kind& kind) const {
     const auto found = shared_.speeds.find(kind);
     if (found == shared_.speeds.end()) return false;
@@ -205,9 +205,9 @@ class BackendChooser::Renderer final : public BrickRenderer {
   const BrickStore& store_;
   std::unique_ptr<BrickRenderer> cpu_;
   std::unique_ptr<GlslRayCaster> gl_;
-  bool failed_ = false;                      ///< OpenGL, on this volume
-  std::optional<std::uint64_t> too_little_;  ///< memory for textures that was left for it
-  bool mostly_empty_ = false;                ///< the last image's blocks
+  bool failed_ = false;                      ///< OpenGL failed on this volume
+  std::optional<std::uint64_t> too_little_;  ///< texture memory that was left when this volume did not fit
+  bool mostly_empty_ = false;                ///< as of the last image
 };
 
 BackendChooser::BackendChooser(Backend wish, Tell tell, const TextureMemoryWish& memory)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who casts a node's rays: the CPU, OpenGL, or whichever turns out to be faster here.
+// Selects what casts a node's rays: the CPU, OpenGL, or whichever is measured to be faster.
 //
-// For an application's own process there is the CPU alone: OpenGL's names mean its entry library there, and its
-// thread has the application's context current.
+// Inside an application's process only the CPU is used: OpenGL's names are bound to the entry library there,
+// and the calling thread has the application's context current.
 #pragma once
 
 #include <functional>
@@ -16,14 +16,14 @@
 
 namespace understudy::volume::glsl {
 
-/// gl: EGL, or OSMesa where there is no EGL. automatic: measured on the first images of each kind.
+/// gl: EGL, or OSMesa if EGL is unavailable. automatic: measured on the first images of each kind.
 enum class Backend { cpu, gl, egl, osmesa, automatic };
 
 constexpr const char* backend_names = "cpu, gl, gl:egl, gl:osmesa, auto";
 std::optional<Backend> backend_of(std::string_view name);
 
-/// Makes renderers that draw as was wished, and where OpenGL cannot, on the CPU. Every choice is told once, in
-/// a line with the reason.
+/// Creates renderers that draw with the requested backend, and on the CPU where OpenGL cannot. Every choice is
+/// reported once, in a line with the reason.
 class BackendChooser {
  public:
   using Tell = std::function<void(const std::string&)>;
@@ -33,7 +33,7 @@ class BackendChooser {
   BackendChooser(const BackendChooser&) = delete;
   BackendChooser& operator=(const BackendChooser&) = delete;
 
-  /// The chooser outlives it and what it makes. All of it belongs to one thread at a time.
+  /// The chooser must outlive the factory and its renderers. All of them belong to one thread at a time.
   BrickRendererFactory factory();
 
  private:

@@ -28,7 +28,7 @@ BrickGrid grid_of(const BrickStore& store, int edge) {
   return BrickGrid::covering(first, end, edge);
 }
 
-/// As many slots as can be, but no more than `most`, with at most `longest` along an axis; nearly a cube.
+/// Arranges as many slots as possible, at most `most` and at most `longest` along an axis; nearly a cube.
 std::array<int, 3> arrange(std::uint64_t most, int longest) {
   std::array<int, 3> best{1, 1, 1};
   std::uint64_t held = 1;
@@ -36,7 +36,7 @@ std::array<int, 3> arrange(std::uint64_t most, int longest) {
     for (int y = x; y <= longest && std::uint64_t(x) * std::uint64_t(y) * std::uint64_t(y) <= most; ++y) {
       const auto face = std::uint64_t(x) * std::uint64_t(y);
       const auto z = int(std::min(most / face, std::uint64_t(longest)));
-      // Later ones are nearer to a cube.
+      // Later arrangements are closer to a cube.
       if (face * std::uint64_t(z) < held) continue;
       held = face * std::uint64_t(z);
       best = {x, y, z};
@@ -90,7 +90,7 @@ void BrickAtlas::allocate_slots() {
     try {
       device_.check("making a texture for bricks");
     } catch (const OutOfMemory&) {
-      // What is free was told wrongly, or one texture cannot have all of it.
+      // The reported free memory was wrong, or one texture cannot have all of it.
       if (most == 1) throw;
       continue;
     }
@@ -191,8 +191,8 @@ void BrickAtlas::upload(std::size_t brick) {
             convert(type, store_.block_data()[block], z * BrickStore::block_slice + y * BrickStore::block_row,
                     kept(0, bx), place(bx * cells, by * cells + y, bz * cells + z));
       }
-  // What is held may end before the brick does. Texels beyond are never sampled, but the filter may touch them
-  // with a weight that rounding leaves: they must be no pending clients.
+  // The held cells may end before the brick does. Texels beyond are never sampled, but the filter may read them
+  // with a weight caused by rounding, so they repeat the outermost texels.
   for (std::size_t axis = 0; axis < 3; ++axis)
     size[axis] = std::min(size[axis], (counts[axis] - first[axis]) * cells + 1);
   for (int z = 0; z < row(); ++z)

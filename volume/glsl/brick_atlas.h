@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Some bricks of a BrickStore, as many as memory allows, side by side in one 3-D texture. Each has all texels
-// of its cells' corners, so that a filter inside it needs no neighbour. Bricks come when they are asked for;
-// those that were not asked for the longest make room.
+// Some bricks of a BrickStore, as many as memory allows, side by side in one 3D texture. Each contains all
+// corner texels of its cells, so that filtering inside it needs no neighbour. Bricks are uploaded on request
+// and replace the least recently requested ones.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ namespace understudy::volume::glsl {
 
 class BrickAtlas {
  public:
-  /// Takes what it needs of what is left of the device's memory. Wants the device to be current, as all
-  /// functions do. Throws NotSupported where that is less than one brick.
+  /// Reserves what it needs of the device's remaining memory. Like all functions, requires the device to be
+  /// current. Throws NoTextureMemory if not even one brick fits.
   BrickAtlas(Device& device, const BrickStore& store, int brick_cells);
 
   /// The bricks of all blocks held.
@@ -28,19 +28,18 @@ class BrickAtlas {
   /// How many bricks can be resident at a time.
   std::size_t slots() const { return brick_in_.size(); }
 
-  /// Brings these bricks in, no more than slots(). Throws NotSupported when one has a texel that is not a
-  /// number.
+  /// Makes these bricks resident, at most slots() of them. Throws NotSupported when one has a NaN texel.
   void make_resident(std::span<const std::size_t> bricks);
-  /// Blocks of the store that show other texels: the resident bricks among theirs are brought in again.
+  /// The texels of these blocks of the store have changed: uploads the affected resident bricks again.
   void blocks_changed(std::span<const std::size_t> blocks);
 
   GLuint texels() const { return texels_.name(); }
-  /// Of the texture, in texels.
+  /// Size of the texture, in texels.
   const std::array<int, 3>& size() const { return size_; }
-  /// A texel per brick: where in the atlas it is, in slots along each axis, and whether it is there.
+  /// A texture with one texel per brick: its slot in the atlas along each axis, and whether it is resident.
   GLuint pages() const { return pages_.name(); }
 
-  /// Since the beginning: bricks brought in, and bricks that made room.
+  /// Bricks uploaded and bricks replaced since the beginning.
   std::uint64_t uploads() const { return uploads_; }
   std::uint64_t evictions() const { return evictions_; }
 
@@ -61,8 +60,8 @@ class BrickAtlas {
   std::array<int, 3> size_{}, slots_along_{};
   std::vector<std::size_t> slot_of_;   ///< per brick
   std::vector<std::size_t> brick_in_;  ///< per slot
-  std::vector<std::uint64_t> asked_;   ///< per slot: when its brick was asked for
-  bool pages_changed_ = false;         ///< and the texture of pages does not tell yet
+  std::vector<std::uint64_t> asked_;   ///< per slot: when its brick was last requested
+  bool pages_changed_ = false;         ///< and the page texture is not up to date
   std::uint64_t clock_ = 0;
   std::vector<std::byte> remote_;  ///< the texels of one brick
   std::uint64_t uploads_ = 0, evictions_ = 0;

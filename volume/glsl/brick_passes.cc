@@ -74,7 +74,7 @@ void BrickPasses::draw(const MarchProgram& program, int width, int height, std::
   std::size_t from = 0;
   for (passes_ = 0; passes_ == 0 || from < order.size(); ++passes_) {
     const std::size_t count = std::min(atlas_.slots(), order.size() - from);
-    // Bringing bricks in binds textures, to whichever unit is active: the field's, which is bound next.
+    // make_resident() binds textures on the active unit: use the field's, which is bound again next.
     gl.ActiveTexture(GLenum(GL_TEXTURE0 + GLint(Unit::field)));
     atlas_.make_resident(std::span(order).subspan(from, count));
     const State &before = states_[std::size_t(passes_ + 1) % 2], &after = states_[std::size_t(passes_) % 2];

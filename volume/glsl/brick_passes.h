@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a volume of which not all bricks are in textures. A ray walks as far as it meets no visible brick that
-// is absent; there it waits, with what it has composed, for the next pass, which brings in the bricks from the
-// first on that a ray waits for, in visibility order. So every ray takes the samples that it would take of the
-// whole volume, in their order, and bricks that no ray reaches are never brought in.
+// Draws a volume of which not all bricks are resident in textures. A ray advances until it reaches a visible
+// brick that is not resident; there it waits, with its composite so far, for the next pass. That pass makes
+// bricks resident in visibility order, from the first one that a ray waits for. So every ray takes the same
+// samples as in the whole volume, in the same order, and bricks that no ray reaches are never uploaded.
 #pragma once
 
 #include <array>
@@ -24,19 +24,19 @@ class BrickPasses {
   BrickAtlas& atlas() { return atlas_; }
   const BrickAtlas& atlas() const { return atlas_; }
 
-  /// Draws rays that are bound already, with the program in use, whose uniforms are set, into `width` x
-  /// `height` pixels. `order` are the bricks that show something, in visibility order. Throws NotSupported.
+  /// Draws into `width` x `height` pixels. Rays must be bound, and the program in use with its uniforms set.
+  /// `order` lists the bricks that show something, in visibility order. Throws NotSupported.
   void draw(const MarchProgram& program, int width, int height, std::vector<std::size_t> order);
 
-  /// Of the last draw(): per pixel premultiplied RGBA, rows bottom up, into rows of `row_pixels`.
+  /// Reads the image of the last draw(): premultiplied RGBA, rows bottom up, into rows of `row_pixels` pixels.
   void read_image(int row_pixels, float* to) const;
-  /// Of the last draw(), per pixel: the next sample, samples taken (negative when the ray became opaque), 0, 0.
+  /// Per pixel of the last draw(): next sample, samples taken (negative: became opaque), 0, samples hidden.
   const std::vector<std::array<float, 4>>& progress() const { return progress_; }
-  /// Passes of the last draw().
+  /// Number of passes of the last draw().
   int passes() const { return passes_; }
 
  private:
-  /// What rays are between two passes.
+  /// The state of the rays between two passes.
   struct State {
     explicit State(const Functions& gl) : sums(gl), progress(gl) {}
     Texture sums, progress;
@@ -44,7 +44,7 @@ class BrickPasses {
   };
 
   void resize(int width, int height);
-  /// The first in `order` that a ray waits for, its size when none waits. Bricks that are not in it are added.
+  /// The first in `order` that a ray waits for, or its size if none waits. Appends missing awaited bricks.
   std::size_t first_wanted(std::vector<std::size_t>& order) const;
 
   Device& device_;

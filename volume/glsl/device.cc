@@ -41,7 +41,7 @@ Device::Device(Platform platform, const TextureMemoryWish& memory)
   gl_.GetIntegerv(GL_MAX_TEXTURE_SIZE, &max_texture_edge_);
   gl_.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &max_volume_edge_);
   texture_memory_.emplace(memory.bytes ? *memory.bytes : automatic_memory(gl_, memory.sharers));
-  // A core context draws nothing without one; it stays bound, and empty.
+  // A core context cannot draw without a vertex array object; this one stays bound, and empty.
   GLuint no_arrays = 0;
   gl_.GenVertexArrays(1, &no_arrays);
   gl_.BindVertexArray(no_arrays);
@@ -61,7 +61,7 @@ const MarchProgram& Device::program(const MarchVariant& variant) {
 void Device::check(const char* what) const {
   const GLenum error = gl_.GetError();
   if (error == GL_NO_ERROR) return;
-  // One call may leave several flags; a lost context reports for ever.
+  // One call may set several error flags; a lost context reports errors for ever.
   for (int flags = 0; flags < 16 && gl_.GetError() != GL_NO_ERROR;) ++flags;
   const std::string text = fmt::format("OpenGL error {:#x} while {}", error, what);
   if (error == GL_OUT_OF_MEMORY) throw OutOfMemory(text + ": out of memory for textures");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One OpenGL context with its entry points and the programs that were made in it. All ray casters of a process
-// can share one; it serves one thread at a time.
+// One OpenGL context with its entry points and its programs. All ray casters of a process can share it; it
+// serves one thread at a time.
 #pragma once
 
 #include <map>
@@ -16,19 +16,19 @@
 
 namespace understudy::volume::glsl {
 
-/// The GL backend cannot draw this request or this volume, and the message says why; the CPU can.
+/// The GL backend cannot draw this request or this volume, for the reason in the message; the CPU can.
 class NotSupported : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Other volumes have all the memory that textures may take; it may come back.
+/// Other volumes use all the memory that textures may take; some may become free later.
 class NoTextureMemory : public NotSupported {
  public:
   using NotSupported::NotSupported;
 };
 
-/// OpenGL has no memory for this, where it might have for less.
+/// OpenGL has no memory for this texture, but may have enough for a smaller one.
 class OutOfMemory : public NotSupported {
  public:
   using NotSupported::NotSupported;
@@ -44,15 +44,15 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  /// What OpenGL calls itself and its version, with the way to it: "llvmpipe (LLVM 15.0.6, 256 bits),
-  /// OpenGL 4.5 (Core Profile) Mesa 22.3.6, on EGL".
+  /// Renderer, version and platform: "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 (Core Profile) Mesa 22.3.6,
+  /// on EGL".
   const std::string& description() const { return description_; }
   int max_texture_edge() const { return max_texture_edge_; }
   int max_volume_edge() const { return max_volume_edge_; }
   TextureMemory& texture_memory() { return *texture_memory_; }
   const TextureMemory& texture_memory() const { return *texture_memory_; }
 
-  /// Holds the context on the calling thread; what is current must not be held twice.
+  /// Keeps the context current on the calling thread; do not nest.
   class Current {
    public:
     explicit Current(Device& device) : context_(*device.context_) { context_.make_current(); }
@@ -64,12 +64,12 @@ class Device {
     OffscreenContext& context_;
   };
 
-  // All that follows wants the context to be current.
+  // All of the following require the context to be current.
 
   const Functions& gl() const { return gl_; }
-  /// Linked and kept. Throws std::runtime_error with the compiler's words.
+  /// Links the program, or returns it from the cache. Throws std::runtime_error with the compiler's message.
   const MarchProgram& program(const MarchVariant& variant);
-  /// Throws NotSupported, OutOfMemory where it is that, naming `what` when OpenGL has reported an error.
+  /// Throws when OpenGL has reported an error: OutOfMemory or else NotSupported, with `what` in the message.
   void check(const char* what) const;
 
  private:

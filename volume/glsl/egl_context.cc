@@ -21,7 +21,7 @@ class EglContext final : public OffscreenContext {
   ~EglContext() override { egl_.DestroyContext(display_, context_); }
 
   void make_current() override {
-    // The API that is bound belongs to the thread.
+    // The bound API is per-thread state.
     if (!egl_.BindAPI(EGL_OPENGL_API) || !egl_.MakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
       throw std::runtime_error(fmt::format(
           "the GL backend's EGL context cannot be made current (EGL error {:#x}); --backend cpu does without",

@@ -50,7 +50,7 @@ FieldTexture::FieldTexture(Device& device, const BrickStore& store)
   allocate(gl, format, size_);
   device.check("making the volume's texture");
 
-  // One layer of blocks after the other; faces that two blocks share are the same texels.
+  // One layer of blocks at a time; faces shared by two blocks are the same texels.
   const auto& counts = store.block_counts();
   const std::size_t slice_texels = std::size_t(size_[0]) * std::size_t(size_[1]);
   std::vector<std::byte> layer(slice_texels * row * format.bytes);

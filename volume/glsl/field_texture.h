@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The texels of a BrickStore as one 3-D texture: a texel per lattice point of the blocks held, so that neither
-// borders nor ends that join are the shader's business.
+// The texels of a BrickStore as one 3D texture, with one texel per lattice point of the blocks held, so that
+// the shader need handle neither texture borders nor repeating axes.
 #pragma once
 
 #include <array>
@@ -15,15 +15,15 @@ namespace understudy::volume::glsl {
 
 class FieldTexture {
  public:
-  /// Whether one texture may hold all of it: by the longest edge that OpenGL takes, and by what is left of the
-  /// device's memory.
+  /// Whether one texture can hold all texels, given OpenGL's largest texture edge and the device's remaining
+  /// memory.
   static bool fits(const Device& device, const BrickStore& store);
 
-  /// What fits(). Wants the device to be current, as all functions do. Throws OutOfMemory, and NotSupported
-  /// when a texel is not a number.
+  /// Requires fits() and, like all functions, the device to be current. Throws OutOfMemory, and NotSupported
+  /// when a texel is NaN.
   FieldTexture(Device& device, const BrickStore& store);
 
-  /// Throws NotSupported as well.
+  /// Also throws NotSupported.
   void blocks_changed(std::span<const std::size_t> blocks);
 
   GLuint name() const { return texture_.name(); }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The OpenGL that the ray caster in GLSL uses: 3.3 core, each entry point from the library whose context it is
-// for.
+// The OpenGL functions that the GLSL ray caster uses: 3.3 core, each entry point from the library of its
+// context.
 #pragma once
 
 #include <GL/glcorearb.h>
 
 namespace understudy::volume::glsl {
 
-// name, and what its type is called in Khronos' header
+// name, and its type in the Khronos header
 #define UNDERSTUDY_GLSL_FUNCTIONS(each)                                                                        \
   each(ActiveTexture, PFNGLACTIVETEXTUREPROC) each(AttachShader, PFNGLATTACHSHADERPROC) each(                  \
       BindFramebuffer, PFNGLBINDFRAMEBUFFERPROC) each(BindTexture, PFNGLBINDTEXTUREPROC)                       \

@@ -31,11 +31,11 @@ namespace {
 
 using Texel4 = std::array<float, 4>;
 
-/// A table's steepness is what an even ramp over all of a volume's values would have as 1. Beyond so much the
-/// rounding of OpenGL's filter, 1e-6 of these values on llvmpipe, would show.
+/// Steepest table for OpenGL's filter, in units of the slope of a linear ramp over all of a volume's values.
+/// With steeper ones the filter's rounding error, 1e-6 of these values on llvmpipe, would be visible.
 constexpr double steepest = 8;
 
-/// Between the least and the greatest value held, in units of the texel type.
+/// Difference between the least and the greatest value held, in units of the texel type.
 double value_span(const BrickStore& store) {
   double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
   for (std::size_t b = 0; b < store.blocks(); ++b)
@@ -69,15 +69,15 @@ void set_filter(const Functions& gl, GLenum target, GLint filter) {
 
 }  // namespace
 
-/// What depends on the classification alone, on whether the operator is `min`, and on whether empty bricks are
-/// left out.
+/// Data that depends only on the classification, on whether the operator is `min`, and on whether empty bricks
+/// are skipped.
 struct GlslRayCaster::Prepared {
   Classification classification;
   bool keeps_clear_samples;
   bool skips;
   std::optional<TransferTable> function;
   OccupancyMap skip;
-  bool steep;  ///< too much so for OpenGL's filter
+  bool steep;  ///< too steep for OpenGL's filter
   Texture distances;
   Texture table;
 
@@ -131,12 +131,12 @@ struct GlslRayCaster::Prepared {
   }
 };
 
-/// The rays of one image, a pixel each, as the shader reads them.
+/// The rays of one image, one per pixel, in the form that the shader reads.
 struct GlslRayCaster::Rays {
   int width = 0;
   int height = 0;
   std::vector<Texel4> starts, steps;
-  std::vector<float> ends;  ///< lengths of the last samples; empty: of one step
+  std::vector<float> ends;  ///< lengths of the last samples' layers; empty: one step each
 
   /// Sets up the rays of `pixels`; returns whether any has a sample.
   bool set_up(const RaySetup& setup, const RenderRequest& request, const Rect& pixels, FrameCounts& counts) {
@@ -177,25 +177,25 @@ struct GlslRayCaster::Rays {
   }
 };
 
-/// All that lives in the context.
+/// Everything that lives in the context.
 struct GlslRayCaster::Resources {
-  // One of the two.
+  // Exactly one of the two is set.
   std::optional<FieldTexture> field;
   std::optional<BrickPasses> bricks;
   Texture starts, steps, ends, image, taken;
   GLuint framebuffer = 0;
-  int width = 0, height = 0;  ///< of the textures that have a texel per pixel
-  /// The latest first: a viewer whose framebuffer keeps alpha asks for two images of every frame.
+  int width = 0, height = 0;  ///< of the textures with one texel per pixel
+  /// Most recent first. Two, because viewers whose framebuffer keeps alpha request two images per frame.
   std::array<std::unique_ptr<Prepared>, 2> prepared;
   Rays rays;
-  std::vector<std::array<float, 2>> counted;  ///< what the shader says in `taken`
+  std::vector<std::array<float, 2>> counted;  ///< read back from `taken`
 
   Resources(Device& device, const BrickStore& store, int brick_cells)
       : starts(device.gl()), steps(device.gl()), ends(device.gl()), image(device.gl()), taken(device.gl()) {
     if (FieldTexture::fits(device, store)) try {
         field.emplace(device, store);
       } catch (const OutOfMemory&) {
-        // As bricks it may have some.
+        // Memory may suffice for bricks.
       }
     if (!field) bricks.emplace(device, store, brick_cells);
     device.gl().GenFramebuffers(1, &framebuffer);
@@ -271,7 +271,7 @@ GlslRayCaster::~GlslRayCaster() {
     device_.gl().DeleteFramebuffers(1, &resources_->framebuffer);
     resources_.reset();
   } catch (const std::exception&) {
-    // A context that cannot be made current any more has lost its textures already.
+    // A context that cannot be made current has already lost its textures.
   }
 }
 
@@ -452,7 +452,7 @@ void GlslRayCaster::draw_all(const RenderRequest& request, Image& out, FrameCoun
   Resources& here = *resources_;
   follow_changes(here);
   const Prepared& prepared = prepared_for(request, here);
-  FrameCounts mine;  // what fails is not counted: the CPU will count it
+  FrameCounts mine;  // not added if drawing fails: the CPU counts then
   mine.blocks = store_.blocks();
   mine.blocks_empty = prepared.skip.empty_bricks();
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray casting in a fragment shader: what the ray caster on the CPU draws (raycast/ray_caster.h), from one 3-D
-// texture in an OpenGL context of its own, or, where that would be over OpenGL's limits or the device's memory,
+// Ray casting in a fragment shader: draws what the ray caster on the CPU draws (raycast/ray_caster.h), from one
+// 3D texture in an OpenGL context of its own, or, if that would exceed OpenGL's limits or the device's memory,
 // from as many bricks as fit, in passes (brick_passes.h). It takes the same samples, at the same float
-// positions; what differs is OpenGL's filter, which is exact to 1e-6 on llvmpipe and has weights of 8 bits on
-// most graphics cards. Where a table is so steep that this would show, the shader interpolates by itself, in
-// float.
+// positions. The difference is OpenGL's filter, which is exact to 1e-6 on llvmpipe and has weights of 8 bits on
+// most graphics cards. For tables so steep that this would be visible, the shader itself interpolates in float.
 //
-// It draws scalar fields under transfer functions and colours under linear maps, on planes and on steps, under
-// every operator. Pre-integration tables, fog, segments, surfaces, light, texels that are not numbers, and
-// images over OpenGL's limits are for the CPU.
+// Supports scalar fields under transfer functions and colours under linear maps, on planes and on steps, under
+// every operator. The CPU draws pre-integration tables, fog, segments, surfaces, light, NaN texels, and images
+// that exceed OpenGL's limits.
 #pragma once
 
 #include <array>
@@ -27,9 +26,9 @@
 
 namespace understudy::volume::glsl {
 
-/// What became of a volume's bricks.
+/// Statistics of a volume's bricks.
 struct BrickFigures {
-  std::size_t bricks = 0;  ///< that the volume has; 0 when one texture holds it all
+  std::size_t bricks = 0;  ///< in the volume; 0 if one texture holds it all
   std::size_t slots = 0;   ///< that can be resident at a time
   int passes = 0;          ///< of the last image
   std::uint64_t uploads = 0, evictions = 0;
@@ -37,12 +36,12 @@ struct BrickFigures {
 
 class GlslRayCaster final : public BrickRenderer {
  public:
-  /// `store` and `device` must outlive it. Textures are made at the first render(). `brick_cells` is a power of
-  /// two, 8 or more.
+  /// `store` and `device` must outlive it. Textures are created by the first render(). `brick_cells` is a power
+  /// of two, 8 or more.
   GlslRayCaster(const BrickStore& store, Device& device, int brick_cells = usual_brick_cells);
   ~GlslRayCaster() override;
 
-  /// Why requests like this one are not drawn here, in one line; empty when they are.
+  /// Why requests like this one are not supported, in one line; empty if they are.
   std::optional<std::string> obstacle(const RenderRequest& request) const;
 
   BrickFigures brick_figures() const;
@@ -50,9 +49,9 @@ class GlslRayCaster final : public BrickRenderer {
   void blocks_changed(std::span<const std::size_t> blocks) override;
 
  private:
-  /// Throws as RayCaster::render() does, and NotSupported, after which the CPU can be asked. `samples_taken`
-  /// includes those that share a stretch of eight with a block that shows something. Tiles that are hidden are
-  /// drawn all the same: one draw has all of them.
+  /// Throws as RayCaster::render() does, and NotSupported, after which the CPU can draw. `samples_taken`
+  /// includes empty samples in a run of eight that begins in a visible block. Hidden tiles are drawn as well:
+  /// one draw call covers all tiles.
   void draw(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion) override;
   void draw_all(const RenderRequest& request, Image& out, FrameCounts& counts);
 
@@ -60,14 +59,14 @@ class GlslRayCaster final : public BrickRenderer {
   struct Rays;
   struct Resources;
 
-  /// Throws as draw() does where the request, the store or the image is not one that can be drawn.
+  /// Throws as draw() does if request, store or image are invalid or unsupported.
   void check_drawable(const RenderRequest& request, const Image& out) const;
-  /// Brings what is kept of the changed blocks to the graphics card.
+  /// Uploads the changed blocks and the data derived from them.
   void follow_changes(Resources& here);
   const Prepared& prepared_for(const RenderRequest& request, Resources& here);
   const MarchProgram& program_for(const RenderRequest& request, const Prepared& prepared,
                                   const Resources& here);
-  /// All rays at once, where one texture holds the field.
+  /// Draws all rays in one pass, if one texture holds the field.
   void draw_whole(const Rect& pixels, Image& out, FrameCounts& counts, Resources& here) const;
   /// The bricks that show something in these pixels, in visibility order.
   std::vector<std::size_t> visible_bricks(const RenderRequest& request, const Prepared& prepared,
@@ -79,7 +78,7 @@ class GlslRayCaster final : public BrickRenderer {
   Device& device_;
   int brick_cells_;
   std::unique_ptr<Resources> resources_;
-  std::vector<std::size_t> changed_;  ///< blocks, since the last render()
+  std::vector<std::size_t> changed_;  ///< blocks changed since the last render()
 };
 
 }  // namespace understudy::volume::glsl

@@ -10,13 +10,13 @@ namespace understudy::volume::glsl {
 
 namespace {
 
-// One triangle over all pixels.
+// One triangle that covers all pixels.
 constexpr const char* vertex_source = R"(#version 330 core
 void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }
 )";
 
-// Blocks are looked up and termination is tested once per eight samples: between them lies straight code.
-// Samples in blocks that show nothing add nothing, so it does no harm when some of the eight lie there.
+// Blocks are looked up and termination is tested once per eight samples, with branch-free code in between.
+// Samples in blocks that show nothing add nothing, so it is harmless if some of the eight lie there.
 constexpr const char* fragment_source = R"(
 uniform sampler2D ray_starts;   // lattice position of sample 0, and the ray's first sample
 uniform sampler2D ray_steps;    // from sample to sample, and the ray's last sample
@@ -302,13 +302,13 @@ std::string defines(const MarchVariant& variant) {
   define(variant.own_filter, "OWN_FILTER");
   define(variant.bricked, "BRICKED");
   define(variant.whole_rays, "WHOLE_RAYS");
-  // The largest float, without a literal that some compilers would round up to infinity.
+  // The largest float, without a literal that some compilers round up to infinity.
   define(variant.op == Operator::min, "NEUTRAL uintBitsToFloat(0x7f7fffffu)");
   define(variant.op != Operator::min, "NEUTRAL 0.0");
   return text + fmt::format("#define COMPOSE(colour) {}\n", composition(variant.op));
 }
 
-/// A shader or program that goes when linking ends, in whatever way.
+/// A shader or program that is deleted when linking ends, also by an exception.
 class Shader {
  public:
   Shader(const Functions& gl, GLenum stage, const std::string& source)

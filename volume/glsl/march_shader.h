@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fragment shader that walks along one pixel's ray, in the variants that requests ask for.
+// The fragment shader that marches along one pixel's ray, in variants for different requests.
 #pragma once
 
 #include <compare>
@@ -10,16 +10,17 @@
 
 namespace understudy::volume::glsl {
 
-/// What the shader knows when it is compiled: a variant holds no code for what its request lacks.
+/// Compile-time properties of the shader: a variant contains no code for features that its request does not
+/// use.
 struct MarchVariant {
-  bool colours = false;  ///< texels are RGBA, through a LinearMap
+  bool colours = false;  ///< texels are RGBA, classified by a LinearMap
   bool bordered = false;
   Filter filter = Filter::linear;
   Operator op = Operator::over;
-  /// Samples are interpolated here, in float, as on the CPU: OpenGL's filter has weights of few bits, which a
-  /// steep table shows. On llvmpipe it takes 2.6 times as long.
+  /// The shader interpolates samples itself, in float, as on the CPU: OpenGL's filter has weights of few bits,
+  /// which become visible with a steep table. On llvmpipe this takes 2.6 times as long.
   bool own_filter = false;
-  /// The field is some bricks of it (brick_passes.h), and rays wait where one is absent.
+  /// The field consists of resident bricks (brick_passes.h), and rays wait at bricks that are not resident.
   bool bricked = false;
   bool whole_rays = false;  ///< RaySteps::cover_whole_ray
 
@@ -31,7 +32,7 @@ enum class Unit : GLint { ray_starts, ray_steps, ray_ends, field, distances, tab
 
 struct MarchProgram {
   GLuint name = 0;
-  // Where uniforms lie; -1 in variants without them.
+  // Locations of uniforms; -1 in variants without them.
   GLint texture_origin = -1;  ///< lattice position of the field texture's first texel, or of the first brick's
   GLint texture_scale = -1;   ///< 1 / its size
   GLint first_block = -1;
@@ -51,7 +52,7 @@ struct MarchProgram {
   GLint passes_before = -1;  ///< of this image
 };
 
-/// Wants a current context. Throws std::runtime_error with the compiler's words.
+/// Requires a current context. Throws std::runtime_error with the compiler's message.
 MarchProgram link_march_program(const Functions& gl, const MarchVariant& variant);
 
 }  // namespace understudy::volume::glsl

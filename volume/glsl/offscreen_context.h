@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An OpenGL 3.3 core context without window, on EGL or on OSMesa (volume/offscreen/).
+// An OpenGL 3.3 core context without a window, on EGL or on OSMesa (volume/offscreen/).
 #pragma once
 
 #include <memory>
@@ -18,14 +18,14 @@ class OffscreenContext {
 
   /// On the calling thread; throws std::runtime_error.
   virtual void make_current() = 0;
-  /// EGL and OSMesa of one Mesa share their notion of the current context without telling each other: neither
-  /// may be left current.
+  /// EGL and OSMesa of the same Mesa share the current context without informing each other: neither may be
+  /// left current.
   virtual void release() noexcept = 0;
-  /// Null where there is none.
+  /// Null if there is no such function.
   virtual Function address(const char* name) const = 0;
 };
 
-/// Devices first, which reach a graphics card where there is one, then Mesa's surfaceless platform. Throws
+/// Tries EGL devices first, which include graphics cards, then Mesa's surfaceless platform. Throws
 /// ContextUnavailable.
 std::unique_ptr<OffscreenContext> egl_context();
 

@@ -32,7 +32,7 @@ class OsMesaContext final : public OffscreenContext {
 
   offscreen::Osmesa osmesa_;
   OSMesaContext context_ = nullptr;
-  std::array<unsigned char, 4 * edge * edge> drawable_{};  ///< never drawn to, but OSMesa wants one
+  std::array<unsigned char, 4 * edge * edge> drawable_{};  ///< never drawn to, but required by OSMesa
 };
 
 }  // namespace

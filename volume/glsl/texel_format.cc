@@ -35,7 +35,7 @@ void convert(TexelType type, const std::byte* block, int from, int count, std::b
   }
   const int channels = type == TexelType::rgba8 ? 4 : 1;
   for (int i = 0; i < count * channels; ++i) {
-    // v / 255 is v * 257 / 65535.
+    // v / 255 equals v * 257 / 65535.
     const auto wide = std::uint16_t(257 * std::to_integer<int>(block[from * channels + i]));
     std::memcpy(to + 2 * i, &wide, sizeof wide);
   }

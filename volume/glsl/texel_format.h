@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How texels of each type lie in a texture. Bytes are widened to 16 bits: some drivers filter 8-bit textures in
-// 8 bits.
+// Texture formats of the texel types. Bytes are widened to 16 bits, because some drivers filter 8-bit textures
+// with 8-bit precision.
 #pragma once
 
 #include <array>
@@ -15,17 +15,17 @@ struct TexelFormat {
   GLint internal = 0;
   GLenum pixels = 0;
   GLenum type = 0;
-  std::size_t bytes = 0;  ///< of a texel
+  std::size_t bytes = 0;  ///< per texel
 };
 
 TexelFormat format_of(TexelType type);
 
-/// `count` texels of a block from texel `from` on, as the texture takes them. Throws NotSupported when one is
-/// not a number: OpenGL's filter need not carry that on.
+/// Converts `count` texels of a block, from texel `from` on, to the texture's format. Throws NotSupported if
+/// one is NaN, because OpenGL's filter need not propagate it.
 void convert(TexelType type, const std::byte* block, int from, int count, std::byte* to);
 
-/// Gives the 3-D texture that is bound undefined texels of this size, filtered linearly. Nearest samples are
-/// fetched.
+/// Allocates undefined texels of this size for the bound 3D texture, with linear filtering. Nearest samples are
+/// fetched with texelFetch.
 void allocate(const Functions& gl, const TexelFormat& format, const std::array<int, 3>& size);
 
 }  // namespace understudy::volume::glsl

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A texture's name, for as long as it is wanted. Made and given up while the device's context is current.
+// Owns a texture name. Create and destroy it while the device's context is current.
 #pragma once
 
 #include <utility>

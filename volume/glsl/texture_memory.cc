@@ -8,7 +8,7 @@ namespace understudy::volume::glsl {
 
 namespace {
 
-// By extensions that Khronos' header of the core does not list; both count in KiB.
+// From extensions that the Khronos core header does not declare; both are in KiB.
 constexpr GLenum current_available_vidmem_nvx = 0x9049;
 constexpr GLenum texture_free_memory_ati = 0x87FC;
 
@@ -25,7 +25,7 @@ bool has_extension(const Functions& gl, std::string_view name) {
 }  // namespace
 
 std::optional<std::uint64_t> free_texture_memory(const Functions& gl) {
-  std::array<GLint, 4> kib{};  // ATI tells more than what is free
+  std::array<GLint, 4> kib{};  // ATI returns more than the free memory
   if (has_extension(gl, "GL_NVX_gpu_memory_info"))
     gl.GetIntegerv(current_available_vidmem_nvx, kib.data());
   else if (has_extension(gl, "GL_ATI_meminfo"))

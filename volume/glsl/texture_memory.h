@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much memory the texels of a node's volumes may take in textures. Other textures (rays, images, tables,
-// distances) are small beside them and are not counted.
+// The memory that the texels of a node's volumes may take in textures. Other textures (rays, images, tables,
+// distances) are small in comparison and not counted.
 #pragma once
 
 #include <array>
@@ -12,16 +12,16 @@
 
 namespace understudy::volume::glsl {
 
-/// What is wished; without `bytes`: a half of what the driver says is free (GL_NVX_gpu_memory_info,
-/// GL_ATI_meminfo), divided by `sharers`, or where it does not say, default_texture_memory.
+/// Requested memory. Without `bytes`: half of the free memory that the driver reports (GL_NVX_gpu_memory_info,
+/// GL_ATI_meminfo), divided by `sharers`; default_texture_memory if it reports none.
 struct TextureMemoryWish {
   std::optional<std::uint64_t> bytes;
-  int sharers = 1;  ///< nodes that use the same card
+  int sharers = 1;  ///< nodes that use the same graphics card
 };
 
 constexpr std::uint64_t default_texture_memory = std::uint64_t(4) << 30;
 
-/// Free memory by the driver's word; none where it does not say. Wants a current context.
+/// Free memory as reported by the driver; empty if it reports none. Requires a current context.
 std::optional<std::uint64_t> free_texture_memory(const Functions& gl);
 
 class TextureMemory {
@@ -33,10 +33,10 @@ class TextureMemory {
   std::uint64_t bytes() const { return bytes_; }
   std::uint64_t left() const { return bytes_ - taken_; }
 
-  /// A part of it, handed back at its end.
+  /// A part of the memory, released by the destructor.
   class Part {
    public:
-    /// Takes no more than what is left().
+    /// `bytes` must be at most left().
     Part(TextureMemory& memory, std::uint64_t bytes) : memory_(memory), bytes_(bytes) {
       memory.taken_ += bytes;
     }

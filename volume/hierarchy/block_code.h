@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One block of a level as bytes: the residuals of the samples that the next level does not have.
+// Encodes one block of a level as bytes: the residuals of the samples that the next level does not have.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,14 @@
 
 namespace understudy::volume {
 
-/// How a block's samples were coded.
+/// How a block's samples are encoded.
 struct BlockCoding {
   Prediction prediction = Prediction::linear;
-  /// Of a Quantiser, in samples; 0: without loss.
+  /// Of a Quantiser, in sample values; 0: lossless.
   double quantum = 0;
 };
 
-/// The samples of a block, x fastest, out of its points.
+/// Extracts the samples of a block, x fastest, from its points.
 template <typename Sample>
 std::vector<Sample> samples_inside(const BlockExtent& extent, std::span<const Sample> points) {
   std::vector<Sample> samples;
@@ -33,8 +33,9 @@ std::vector<Sample> samples_inside(const BlockExtent& extent, std::span<const Sa
   return samples;
 }
 
-/// Codes `wanted`, the samples of a block, x fastest. The even points of `points` are given; afterwards all
-/// samples of the block are as a reader will have them. Null where the coding cannot keep its quantum.
+/// Encodes `wanted`, the samples of a block, x fastest. The even points of `points` must be set; afterwards all
+/// samples of the block are set to the values that a reader will decode. Empty if the error bound of the
+/// quantum cannot be kept.
 template <typename Sample>
 std::optional<std::vector<std::byte>> coded_block(const BlockExtent& extent, const BlockCoding& coding,
                                                   std::span<const Sample> wanted, int effort,
@@ -67,7 +68,7 @@ std::optional<std::vector<std::byte>> coded_block(const BlockExtent& extent, con
   return packed_planes(std::as_bytes(std::span(residuals)), sizeof(U), effort);
 }
 
-/// Fills the samples of a block, whose even points are given. False where `packed` is no such block.
+/// Fills in the samples of a block whose even points are set. Returns false if `packed` is not such a block.
 template <typename Sample>
 bool decode_block(const BlockExtent& extent, const BlockCoding& coding, std::span<const std::byte> packed,
                   std::span<Sample> points) {
@@ -88,7 +89,7 @@ bool decode_block(const BlockExtent& extent, const BlockCoding& coding, std::spa
   return true;
 }
 
-/// The one block of the coarsest level: each sample is predicted by the one before it.
+/// The single block of the coarsest level: each sample is predicted by the previous one.
 template <typename Sample>
 std::vector<std::byte> coded_coarsest(std::span<const Sample> samples, int effort) {
   std::vector<Residual<Sample>> residuals;

@@ -15,7 +15,7 @@ struct FreeContext {
   void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
 };
 
-// Planes begin with the bytes that count least.
+// Planes are in order from the least significant byte.
 std::size_t byte_in_memory(std::size_t plane, std::size_t width) {
   return std::endian::native == std::endian::little ? plane : width - 1 - plane;
 }

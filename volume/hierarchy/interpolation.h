@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A block of samples, predicted from every second one: the interpolating wavelets of Donoho 1992 (linear: those
-// of Strengert et al. 2005), as a lifting scheme without its update step. What is stored of a sample is how far
-// it lies from its prediction.
+// Predicts a block of samples from every second one: the interpolating wavelets of Donoho 1992 (linear: those
+// of Strengert et al. 2005), as a lifting scheme without its update step. For each sample, its difference from
+// the prediction is stored.
 //
-// Along x the samples between two known ones are predicted first, then along y, then along z, each from samples
-// that are final: predicted ones are corrected before they predict others. Beyond the far faces of a block lies
-// one layer more, of which the next level's samples are known; those between them stay as predicted.
+// Along x, the samples between two known ones are predicted first, then along y, then along z, each from final
+// samples: predicted samples are corrected before they predict others. Beyond the far faces of a block there is
+// one additional layer. In it, the samples of the next level are known; those in between keep their
+// predictions.
 #pragma once
 
 #include <algorithm>
@@ -21,10 +22,10 @@
 
 namespace understudy::volume {
 
-/// By the two neighbours along an axis, or by four where there are as many.
+/// From the two neighbours along an axis, or from four where there are four.
 enum class Prediction : std::uint8_t { linear = 0, cubic = 1 };
 
-/// Of a block and the layer beyond it.
+/// The extent of a block and of the layer beyond it.
 struct BlockExtent {
   explicit BlockExtent(const TexelBox& samples) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -35,7 +36,7 @@ struct BlockExtent {
   std::size_t samples() const {
     return std::size_t(inside[0]) * std::size_t(inside[1]) * std::size_t(inside[2]);
   }
-  /// Of them, those that the next level does not have.
+  /// Number of samples of the block that the next level does not have.
   std::size_t predicted() const {
     std::size_t known = 1;
     for (const int n : inside) known *= std::size_t((n + 1) / 2);
@@ -57,7 +58,7 @@ namespace hierarchy_detail {
 template <typename Sample>
 using Wide = std::conditional_t<(sizeof(Sample) < 4), std::int32_t, std::int64_t>;
 
-/// Predictions must have the same bits everywhere: what is no finite number predicts 0.
+/// Predictions must have the same bits everywhere: values that are not finite are replaced by 0.
 template <typename Sample>
 Sample finite_or_zero(Sample value) {
   return std::abs(value) <= std::numeric_limits<Sample>::max() ? value : Sample(0);
@@ -83,7 +84,8 @@ Sample from_four(Sample before, Sample a, Sample b, Sample behind) {
   }
 }
 
-/// A row of samples between rows that lie `away` to both sides, and, if by `four`, three times as far.
+/// Predicts a row of samples from the rows at distance `away` on both sides, and if `four`, also at three times
+/// that.
 template <typename Sample>
 void predict_row(const Sample* at, std::ptrdiff_t away, int count, bool four, Sample* predicted) {
   for (int i = 0; i < count; ++i)
@@ -93,9 +95,9 @@ void predict_row(const Sample* at, std::ptrdiff_t away, int count, bool four, Sa
 
 }  // namespace hierarchy_detail
 
-/// Fills what lies between the even points of `points` (BlockExtent). `correct(place, stride, predicted,
-/// count)` is called for every row of samples in the block, the first at `place` and the others `stride` apart
-/// along x, always in the same order; it turns predictions into samples.
+/// Fills in the points between the even points of `points` (BlockExtent). Calls `correct(place, stride,
+/// predicted, count)` for every row of samples in the block, the first at `place` and the others `stride` apart
+/// along x, always in the same order; it must turn predictions into samples.
 template <typename Sample, typename Correct>
 void fill_between(const BlockExtent& extent, Prediction prediction, Sample* points, Correct&& correct) {
   using hierarchy_detail::from_four;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The levels of a hierarchical volume and their blocks. Level 0 is the volume; level l + 1 has every second
-// sample of level l along each axis, the first one included. So its samples are some of the volume's own, and
+// sample of level l along each axis, including the first. So its samples are a subset of the volume's own, and
 // neighbouring blocks of one level agree where they meet. The coarsest level is one block.
 #pragma once
 
@@ -30,10 +30,10 @@ class LevelGrid {
   /// The samples of a block, in its level.
   TexelBox samples_of(int level, const BlockPlace& block) const;
 
-  /// Blocks are numbered from the coarsest level on, in each level x fastest.
+  /// Blocks are numbered from the coarsest level on, x fastest in each level.
   std::size_t number_of(int level, const BlockPlace& block) const;
   std::size_t count() const { return first_of(-1); }
-  /// The number of a level's first block; of level -1: behind the last one.
+  /// The number of a level's first block; for level -1: the number of blocks.
   std::size_t first_of(int level) const;
 
  private:
@@ -41,13 +41,13 @@ class LevelGrid {
   int levels_ = 1;
 };
 
-/// The blocks in which samples of `box` lie, as a half-open box of places.
+/// The blocks that contain samples of `box`, as a half-open box of places.
 TexelBox blocks_around(const TexelBox& box);
 
-/// The samples of the next level that those of `box` are predicted from.
+/// The samples of the next level from which those of `box` are predicted.
 TexelBox coarser_samples_around(const TexelBox& box, const std::array<int, 3>& coarser_size);
 
-/// Calls `visit` with every place of a box of blocks, x fastest.
+/// Calls `visit` for every place in a box of blocks, x fastest.
 template <typename Visit>
 void for_each_block(const TexelBox& blocks, Visit&& visit) {
   for (int z = blocks.low[2]; z < blocks.high[2]; ++z)

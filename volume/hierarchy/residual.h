@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a sample lies from its prediction, as an unsigned number that is small where that is little.
+// The difference between a sample and its prediction, as an unsigned number that is small for small
+// differences.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +23,7 @@ using UnsignedOf =
 template <typename Sample>
 using Residual = UnsignedOf<sizeof(Sample)>;
 
-/// Numbers in the order of the samples; every one is that of one sample, not-a-numbers included.
+/// Maps samples to unsigned numbers of the same order, one to one, including NaN.
 template <typename Sample>
 Residual<Sample> ordered(Sample sample) {
   using U = Residual<Sample>;
@@ -43,7 +44,7 @@ Sample of_ordered(Residual<Sample> number) {
   return std::bit_cast<Sample>(number);
 }
 
-/// 0, -1, 1, -2, 2, … become 0, 1, 2, 3, 4, …
+/// 0, -1, 1, -2, 2, ... become 0, 1, 2, 3, 4, ...
 template <typename U>
 U folded(U difference) {
   return U(U(difference << 1) ^ U(0 - U(difference >> (8 * sizeof(U) - 1))));
@@ -53,7 +54,7 @@ U unfolded(U residual) {
   return U(U(residual >> 1) ^ U(0 - U(residual & 1)));
 }
 
-/// Without loss.
+/// Lossless.
 template <typename Sample>
 Residual<Sample> exact_residual(Sample sample, Sample predicted) {
   using U = Residual<Sample>;
@@ -65,8 +66,8 @@ Sample exact_sample(Residual<Sample> residual, Sample predicted) {
   return of_ordered<Sample>(U(ordered(predicted) + unfolded(residual)));
 }
 
-/// Differences as multiples of a quantum: no sample is farther from its own than half of it. For integers the
-/// quantum is odd.
+/// Differences as multiples of a quantum: the error of a sample is at most half of it. For integers the quantum
+/// must be odd.
 template <typename Sample>
 class Quantiser {
  public:
@@ -79,7 +80,7 @@ class Quantiser {
     const double value = double(predicted) + double(S(unfolded(residual))) * quantum_;
     return Sample(std::clamp(value, least, greatest));
   }
-  /// None where no multiple comes close enough, as of what is no finite number.
+  /// Empty if no multiple is close enough, e.g. for values that are not finite.
   std::optional<Residual<Sample>> residual(Sample wanted, Sample predicted) const {
     using U = Residual<Sample>;
     constexpr double most = 1 << 30;

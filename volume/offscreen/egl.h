@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// EGL without a window system: the one place that opens libEGL, its displays, and contexts on them.
+// EGL without a window system: the only place that opens libEGL, its displays, and contexts on them.
 #pragma once
 
 #include <EGL/egl.h>
@@ -13,26 +13,26 @@
 namespace understudy::volume::offscreen {
 
 struct EglContextWish {
-  std::optional<int> version;  ///< 100 * major + 10 * minor; none: what the driver gives unasked
+  std::optional<int> version;  ///< 100 * major + 10 * minor; empty: the driver's default
   bool core = false;
-  EGLConfig config = EGL_NO_CONFIG_KHR;  ///< this: for framebuffer objects alone
+  EGLConfig config = EGL_NO_CONFIG_KHR;  ///< the default permits rendering to framebuffer objects only
   EGLContext share = EGL_NO_CONTEXT;
 };
 
-/// EGL's functions are called by their own names, without "egl".
+/// Members have the names of EGL's functions, without "egl".
 class Egl {
  public:
-  /// Throws ContextUnavailable where libEGL is missing, or older than EGL 1.5.
+  /// Throws ContextUnavailable if libEGL is missing, or older than EGL 1.5.
   Egl();
 
   enum class First {
-    devices,     ///< they reach a graphics card where there is one
+    devices,     ///< include graphics cards, if present
     surfaceless  ///< Mesa's platform
   };
 
-  /// The first display without a window system that takes desktop OpenGL and that `accept` is content with.
-  /// It is initialised and never terminated: a display is one for the whole process, and others may use it.
-  /// Throws ContextUnavailable, which says that no display gives `what`.
+  /// Returns the first display without a window system that supports desktop OpenGL and that `accept` accepts.
+  /// It is initialised and never terminated: a process has one instance of each display, which others may use.
+  /// Throws ContextUnavailable, with the message that no display provides `what`.
   template <class Accept>
   EGLDisplay open_display(First first, const char* what, Accept accept) const {
     const std::vector<EGLDisplay> found = displays(first);
@@ -42,7 +42,7 @@ class Egl {
     none_gives(found.size(), what);
   }
 
-  /// EGL_NO_CONTEXT where the driver has none of this kind.
+  /// EGL_NO_CONTEXT if the driver has none of this kind.
   EGLContext create_context(EGLDisplay display, const EglContextWish& wish) const;
 
   decltype(&eglGetProcAddress) GetProcAddress = nullptr;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OSMesa, Mesa's renderer on the CPU that needs neither EGL nor a kernel's graphics driver: the one place that
-// opens libOSMesa.
+// OSMesa, Mesa's CPU renderer that needs neither EGL nor a kernel graphics driver: the only place that opens
+// libOSMesa.
 #pragma once
 
 #include <GL/osmesa.h>
@@ -18,13 +18,13 @@ struct OsmesaContextWish {
   OSMesaContext share = nullptr;
 };
 
-/// OSMesa's functions are called by their own names, without "OSMesa".
+/// Members have the names of OSMesa's functions, without "OSMesa".
 class Osmesa {
  public:
-  /// Throws ContextUnavailable where libOSMesa is missing, or older than Mesa 12.
+  /// Throws ContextUnavailable if libOSMesa is missing, or older than Mesa 12.
   Osmesa();
 
-  /// Four bytes a pixel. Null where the driver has none of this kind.
+  /// Four bytes per pixel. Null if the driver has none of this kind.
   OSMesaContext create_context(const OsmesaContextWish& wish) const;
 
   decltype(&OSMesaCreateContextAttribs) CreateContextAttribs = nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A library of the system that is opened when asked for.
+// A system library that is opened on request.
 #pragma once
 
 #include <initializer_list>
@@ -8,7 +8,7 @@
 
 namespace understudy::volume::offscreen {
 
-/// There is no such context on this machine; the message says why, and what to install.
+/// No such context is available on this machine; the message has the reason, and what to install.
 class ContextUnavailable : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -17,11 +17,11 @@ class ContextUnavailable : public std::runtime_error {
 /// Never closed: drivers leave threads and exit handlers behind.
 class SystemLibrary {
  public:
-  /// Opens the first of `names` that can be opened; `packages` have it. Throws ContextUnavailable.
+  /// Opens the first of `names` that can be opened; `packages` provide it. Throws ContextUnavailable.
   SystemLibrary(std::initializer_list<const char*> names, const char* packages);
 
-  /// Gives `function` the address of `name`. Throws ContextUnavailable where it is missing: `version` of the
-  /// library has it.
+  /// Sets `function` to the address of `name`. Throws ContextUnavailable if it is missing, with `version` as
+  /// the version of the library that has it.
   template <class Function>
   void find(const char* name, const char* version, Function& function) const {
     function = reinterpret_cast<Function>(address(name, version));

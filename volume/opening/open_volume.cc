@@ -38,7 +38,7 @@ std::unique_ptr<VolumeFile> opened(const std::string& name, const FileHints& hin
   if (is_meta_image(name)) return open_meta_image(name, hints.time_step, files);
   if (is_vti(name)) return open_vti(name, files);
   if (is_nrrd(name, files)) return open_nrrd(name, hints.time_step, files);
-  // A DICOM file may begin as a TIFF file does, to be both.
+  // A file may be valid DICOM and TIFF at once, beginning like a TIFF file.
   if (is_dicom(name, files)) return open_series_of_file(name, hints.time_step, files, headers);
   if (is_tiff(name, files)) return open_tiff(name, hints, files);
   return open_raw(name, hints, files);

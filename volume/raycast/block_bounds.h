@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a block can add to a maximum: rays pass by blocks that show nothing larger than what they have seen.
+// Upper bounds of blocks under a maximum: rays skip blocks that show nothing larger than their maximum so far.
 #pragma once
 
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace understudy::volume {
 
-/// Per block the largest sum of components that a sample of it can have. Empty when a component of `table`
-/// falls anywhere, or is negative: only of colours that rise together is the maximum one of them, and the one
-/// whose components have the largest sum.
+/// Per block the largest sum of components that a sample in it can have. Empty when a component of `table` is
+/// negative or decreases anywhere: only among colours whose components increase together is the componentwise
+/// maximum one of them, and the one with the largest sum.
 std::vector<float> block_bounds(const BrickStore& store, const TransferTable& table);
 
-/// The same for one block, under a table that rises.
+/// The same for one block, for a `table` without negative or decreasing components.
 float block_bound(const BrickStore& store, const TransferTable& table, std::size_t block);
 
 }  // namespace understudy::volume

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What draws the cells of one BrickStore: the ray caster on the CPU, or another that keeps its contract
-// (raycast/ray_caster.h). Whoever holds bricks is given the means to make one.
+// Interface of whatever draws the cells of a BrickStore: the ray caster on the CPU, or another renderer with
+// the same contract (raycast/ray_caster.h). Owners of bricks are given a factory for it.
 #pragma once
 
 #include <cstddef>
@@ -21,17 +21,17 @@ class BrickRenderer {
  public:
   virtual ~BrickRenderer() = default;
 
-  /// These blocks of the store show other texels than at the last render().
+  /// The texels of these blocks of the store have changed since the last render().
   virtual void blocks_changed(std::span<const std::size_t> blocks) = 0;
 
-  /// Renders the pixels of `out.rect` that lie in the request's window; all others become neutral, and so may
-  /// those that `occlusion` hides. It is told of what these bricks hide.
+  /// Renders the pixels of `out.rect` that lie in the request's window. All others become neutral, and so may
+  /// those that `occlusion` hides. Reports to `occlusion` what these bricks hide.
   void render(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion = nullptr) {
     draw(request, out, counts, occlusion);
   }
 
-  /// The estimated cost of render() in each of `tiles`, in a unit of its own; `costs` has a number for
-  /// each tile. Where a renderer cannot tell, their pixels.
+  /// Estimates the cost of render() in each of `tiles`, in a unit of the renderer's choice; `costs` has one
+  /// element per tile. By default, a tile's number of pixels.
   virtual void estimate_costs(const RenderRequest& request, std::span<const Rect> tiles,
                               std::span<float> costs);
 
@@ -45,7 +45,7 @@ class BrickRenderer {
   BrickRenderer& operator=(BrickRenderer&&) = default;
 };
 
-/// The store outlives what is made for it.
+/// The store outlives the renderers made for it.
 using BrickRendererFactory = std::function<std::unique_ptr<BrickRenderer>(const BrickStore&)>;
 
 /// The ray caster on the CPU.

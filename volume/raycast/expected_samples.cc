@@ -20,10 +20,10 @@ namespace understudy::volume {
 
 namespace {
 
-/// What passing a block costs that shows nothing, in parts of what its samples would.
+/// Cost of passing an empty block, as a fraction of the cost of its samples.
 constexpr double passing = 1.0 / 256;
 
-/// Which blocks show something, as the ray caster finds it.
+/// Which blocks show something, by the criteria of the ray caster.
 class Visibility {
  public:
   Visibility(const BrickStore& store, const RenderRequest& request)
@@ -62,7 +62,7 @@ double sample_density(const RenderRequest& request, const Vec3& t) {
     if (dot(plane.normal, t) + plane.offset < 0) return 0;
   const Matrix4& m = request.texture_to_clip;
   const Vec4 clip = transform_point(m, t);
-  // In front of the near plane and behind the far one there are none either.
+  // There are no samples in front of the near plane or behind the far plane.
   if (!(clip[3] > 0) || std::abs(clip[2]) > clip[3]) return 0;
   const double x = clip[0] / clip[3], y = clip[1] / clip[3];
   const double column = request.viewport.x + request.viewport.width * (x + 1) / 2;
@@ -75,7 +75,7 @@ double sample_density(const RenderRequest& request, const Vec3& t) {
     for (std::size_t k = 0; k < 3; ++k) g[k] = (m[std::size_t(4 * of) + k] - at * m[12 + k]) / clip[3];
     return g;
   };
-  // Along the ray both pixel coordinates stand still.
+  // Both pixel coordinates are constant along the ray.
   const Vec3 along =
       scale(cross(gradient(0, x), gradient(1, y)), 0.25 * request.viewport.width * request.viewport.height);
   if (!request.steps) {
@@ -99,7 +99,7 @@ void add_expected_samples(const BrickStore& store, const RenderRequest& request,
   const Visibility shows(store, request);
   const auto& first = store.first_block();
   const auto& counts = store.block_counts();
-  // Layers of cubes beside each other: no two tasks add to one cube.
+  // One task per layer of cubes: no two tasks add to the same cube.
   const int blocks_per_cube = costs.edge() / block;
   const int last_layer = counts[2] > 0 ? (first[2] + counts[2] - 1) / blocks_per_cube : -1;
   tbb::parallel_for(first[2] / blocks_per_cube, last_layer + 1, [&](int layer) {

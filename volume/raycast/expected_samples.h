@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many samples the ray caster may be expected to take where, before it does: what a block shows under the
-// classification, times how densely the request's samples lie there. Opaque things in front are not thought of.
+// The number of samples that the ray caster is expected to take in each part of the volume, before it casts
+// rays: whether a block is visible, times the density of the request's samples. Occlusion is not considered.
 #pragma once
 
 #include "volume/block_costs.h"
@@ -11,13 +11,13 @@ namespace understudy::volume {
 
 struct RenderRequest;
 
-/// Samples per unit of texture space around `t`, of all pixels; 0 behind the eye and where the request has
-/// none. Planes or steps: pixels times samples along their rays, by the determinant of (x, y, i) over t.
+/// Samples per unit of texture space near `t`, over all pixels; 0 behind the eye and where the request has
+/// none. For planes or steps: pixels times samples along their rays, from the determinant of (x, y, i) over t.
 double sample_density(const RenderRequest& request, const Vec3& t);
 
-/// Adds to `costs`, of the store's whole lattice, what each block costs whose lowest cell the store owns. A
-/// block that shows nothing costs a small part of what it would: rays must pass it. What has a block of
-/// segments is taken to show something. `request` must be valid.
+/// Adds the cost of each block whose lowest cell the store owns to `costs`, which covers the store's whole
+/// lattice. An empty block costs a small fraction of its samples, because rays must pass it. Under a
+/// PreIntegrationTable, every block counts as visible. `request` must be valid.
 void add_expected_samples(const BrickStore& store, const RenderRequest& request, BlockCosts& costs);
 
 }  // namespace understudy::volume

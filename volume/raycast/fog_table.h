@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fog made ready for sampling: a place in its table as a function of lattice coordinates, and the slope to the
-// next entry beside every entry.
+// Fog prepared for sampling: the position in its table as a function of lattice coordinates, and with every
+// entry its difference to the next.
 #pragma once
 
 #include <array>
@@ -16,12 +16,12 @@ class FogTable {
  public:
   FogTable(const Fog& fog, const BrickStore& store);
 
-  /// Place in the table of a sample at lattice position p: clamp(gradient() . p + offset(), 0, last()).
+  /// The position in the table for lattice position p: clamp(gradient() . p + offset(), 0, last()).
   const std::array<float, 3>& gradient() const { return gradient_; }
   float offset() const { return offset_; }
   float last() const { return float(last_); }
 
-  /// Per entry eight floats: added colour and weight, and their difference to the next entry (0 after the
+  /// Eight floats per entry: added colour and weight, and their difference to the next entry (0 after the
   /// last).
   const float* rows() const { return rows_.data(); }
 

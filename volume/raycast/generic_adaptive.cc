@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adaptive steps, part by part, ray by ray: what is meant by them, where the vector kernel knows no instruction
-// set, and what tests hold it against.
+// Adaptive steps, part by part, ray by ray: the reference implementation, used where the vector kernel supports
+// no instruction set, and by tests to check the vector kernel.
 #include <algorithm>
 #include <cmath>
 
@@ -31,7 +31,7 @@ class PartWalk {
       const float u0 = on_ray(k), u1 = on_ray(k + 1);
       move_to(u0);
       if (const float steps = reader_.steps_in_empty(step_); steps >= 0) {
-        // Only steps that end in empty bricks are empty.
+        // Only steps that also end in an empty brick are skipped.
         const int next = int(std::floor(std::min(u0 + steps, float(last) + 1)));
         if (next > k) {
           k = next;
@@ -59,7 +59,7 @@ class PartWalk {
   }
 
  private:
-  /// Of a step in whose middle the reader stands.
+  /// Number of halvings of the step in whose middle the reader is.
   int divisions_here() const {
     const auto of_block = int(scene_.division->classes()[reader_.block()]);
     if (of_block == 0) return 0;
@@ -79,7 +79,7 @@ class PartWalk {
     reader_.move_to(p, scene_.held_low, scene_.held_high);
   }
 
-  /// A part of a step of which `length` is left.
+  /// Composites one part of a step; `length` is the clipped length of that step.
   void compose(int divisions, float value, float length, Rgba& pixel) const {
     if (std::isnan(value)) return;
     const PartTable& table = *scene_.parts;

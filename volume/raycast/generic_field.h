@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The field as the plain kernels read it: one position after the other.
+// The field as the generic kernels read it: one position at a time.
 #pragma once
 
 #include <algorithm>
@@ -56,7 +56,7 @@ inline bool classify(const Scene& scene, float value, Rgba& colour) {
   return true;
 }
 
-/// From what a layer one step long shows to what one of `length` steps does.
+/// Converts the colour of a layer one step long to that of a layer of `length` steps.
 inline void resize_layer(float length, Rgba& colour) {
   if (length == 1) return;
   const float opacity = colour[3];
@@ -66,7 +66,7 @@ inline void resize_layer(float length, Rgba& colour) {
   colour[3] = kept;
 }
 
-/// A pre-integration table at places within it.
+/// Interpolates a pre-integration table at a position within it.
 inline Rgba interpolated(const PreIntegrationLookup& pairs, float x, float y) {
   const auto entry = [&](float at) { return std::min(std::size_t(at), std::size_t(pairs.edge()) - 2); };
   const std::size_t i = entry(x), j = entry(y);
@@ -92,13 +92,13 @@ inline bool classify(const PreIntegrationLookup& pairs, float front, float back,
   return true;
 }
 
-/// The field at one place, which lies where the scene's store holds texels.
+/// Reads the field at one position, which must lie where the scene's store holds texels.
 template <typename FieldType>
 class FieldReader {
  public:
   explicit FieldReader(const Scene& scene) : scene_(scene) {}
 
-  /// The place is clamped to the box from `low` to `high`.
+  /// Clamps the position to the box from `low` to `high`.
   void move_to(const std::array<float, 3>& position, const std::array<float, 3>& low,
                const std::array<float, 3>& high) {
     position_ = position;
@@ -110,11 +110,11 @@ class FieldReader {
   const std::array<float, 3>& position() const { return position_; }
   std::size_t block() const { return block_; }
 
-  /// How many steps from here on lie in empty bricks for sure; negative in a block that shows something.
+  /// Lower bound of the number of steps from here in empty bricks; negative in a block that shows something.
   float steps_in_empty(const std::array<float, 3>& step) const {
     const int distance = scene_.skip->distances()[block_];
     if (distance == 0) return -1;
-    // All blocks fewer than `distance` steps away are empty. Rounding must not carry us past their faces.
+    // All blocks fewer than `distance` blocks away are empty. Rounding must not lead past their faces.
     float most = 1e9F;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float low = std::floor(clamped_[axis] / 8) * 8;
@@ -142,7 +142,7 @@ class FieldReader {
     const auto inside = FieldType::mix(
         FieldType::mix(along_x(corner_), along_x(corner_ + y), fraction_[1]),
         FieldType::mix(along_x(corner_ + z), along_x(corner_ + y + z), fraction_[1]), fraction_[2]);
-    // Beyond the outermost texel centres the filter mixes in a constant: one axis at a time, so the weights
+    // Beyond the outermost texel centres the filter blends in a constant, one axis at a time, so the weights
     // multiply.
     float weight = 1;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -163,7 +163,7 @@ class FieldReader {
     return float(rounded_mix(along_y(corner_), along_y(corner_ + BrickStore::block_slice), steps[2]));
   }
 
-  /// Where the texels around the clamped position are.
+  /// Finds the texels around the clamped position.
   void find_cell() {
     block_ = 0;
     corner_ = 0;
@@ -181,7 +181,7 @@ class FieldReader {
 
   const Scene& scene_;
   std::array<float, 3> position_{}, clamped_{}, fraction_{};
-  std::size_t block_ = 0;  // among those held
+  std::size_t block_ = 0;  // index among the blocks held
   int corner_ = 0;         // lowest texel of the cell, in the block
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sample by sample, ray by ray, in the words of the definition. It runs where the vector kernel knows no
-// instruction set, and tests hold the vector kernel against it.
+// Post-classified samples, one by one, ray by ray: the reference implementation, used where the vector kernel
+// supports no instruction set, and by tests to check the vector kernel.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,12 +31,12 @@ bool classify(const Scene& scene, const Rgba& texel, Rgba& colour) {
   return true;
 }
 
-/// Colours have no pre-integration table.
+/// Volumes of colours have no pre-integration table.
 bool classify(const PreIntegrationLookup&, const Rgba&, const Rgba&, Rgba&) {
   return false;
 }
 
-/// What the fog at lattice position p leaves of a colour.
+/// Applies the fog at lattice position p to a colour.
 void lay_in_fog(const FogTable& fog, const std::array<float, 3>& p, Rgba& colour) {
   const std::array<float, 3>& gradient = fog.gradient();
   const float free = gradient[0] * p[0] + gradient[1] * p[1] + gradient[2] * p[2] + fog.offset();
@@ -88,7 +88,7 @@ class RayWalk {
     reader_.move_to(position, {}, scene_.top);
   }
 
-  /// To the back of the segment whose front lies at sample k.
+  /// Moves to the back of the segment whose front lies at sample k.
   void move_behind(int k) {
     std::array<float, 3> position;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -100,7 +100,7 @@ class RayWalk {
 
   const std::array<float, 3>& position() const { return reader_.position(); }
 
-  /// How many samples from here on lie in empty bricks for sure; 0 in a block that shows something.
+  /// Lower bound of the number of samples from here on in empty bricks; 0 in a block that shows something.
   int empty_ahead() const { return int(std::floor(reader_.steps_in_empty(step_))) + 1; }
 
   typename FieldType::Sample sample() const { return reader_.sample(); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segment by segment, ray by ray, in the words of the definition: surfaces, light and pre-integration where the
-// vector kernel knows no instruction set, and what tests hold it against.
+// Surfaces, light and pre-integration, one segment at a time, ray by ray: the reference implementation, used
+// where the vector kernel supports no instruction set, and by tests to check the vector kernel.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 using Place = std::array<float, 3>;
 
-/// Up to an opacity of `limit`.
+/// Composites `colour` behind `pixel`, unless the pixel's opacity has reached `limit`.
 void compose(const Rgba& colour, Rgba& pixel, float limit = 1) {
   if (limit < 1 && pixel[3] >= limit) return;
   const float room = 1 - pixel[3];
@@ -52,7 +52,7 @@ class SegmentWalk {
       const float u = on_ray(k);
       const float front = value_at(place(u));
       if (const float steps = reader_.steps_in_empty(step_); steps >= 0) {
-        // Only segments that end in empty bricks are empty.
+        // Only segments that also end in an empty brick are skipped.
         const int next = int(std::floor(std::min(u + steps, float(last_) + 1)));
         if (next > k) {
           k = next;
@@ -88,7 +88,7 @@ class SegmentWalk {
     return reader_.sample();
   }
 
-  /// Sample and segment k.
+  /// Composites sample k and segment k.
   void show(int k, float front, Rgba& pixel) {
     const float u0 = on_ray(k), u1 = on_ray(k + 1);
     const Place from = place(u0), to = place(u1);
@@ -105,7 +105,7 @@ class SegmentWalk {
       return p;
     };
     const float cells = std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
-    float layer = 1;  // steps of the sample's own that are left
+    float layer = 1;  // remaining length of the sample's layer, in steps
     const auto piece = [&](float begin, float end, float at_begin, float at_end) {
       if (!segments_.pre_integrated || !(end > begin)) return;
       Rgba colour = shown_between(at_begin, at_end, (end - begin) * (u1 - u0));
@@ -133,17 +133,17 @@ class SegmentWalk {
     piece(search.front, 1, search.at_front, back);
   }
 
-  /// What `length` steps show on which the field changes evenly between two values. Beyond the ends of the
-  /// table the medium is that of its ends, so there the way is parted.
+  /// Colour of `length` steps on which the field varies linearly between two values. Beyond either end of the
+  /// table, the entry at that end applies, so the path is split there.
   Rgba shown_between(float front, float back, float length) const {
     const PreIntegrationLookup& pairs = *scene_.pairs;
     const auto place = [&](float value) {
-      constexpr float far = 1e18F;  // so that differences of places are numbers
+      constexpr float far = 1e18F;  // keeps differences of positions finite
       return std::clamp((value - pairs.low()) * pairs.scale(), -far, far);
     };
     const auto inside = [&](float at) { return std::clamp(at, 0.0F, pairs.last()); };
     const float from = place(front), to = place(back), first = inside(from), last = inside(to);
-    float enters = 0, leaves = 1;  // the table, as shares of the way
+    float enters = 0, leaves = 1;  // where the path enters and leaves the table, as fractions of its length
     if (first != last) {
       enters = (first - from) / (to - from);
       leaves = (last - from) / (to - from);
@@ -155,9 +155,9 @@ class SegmentWalk {
     return sum;
   }
 
-  /// Between two places in the table. A part of a step is more even than the whole, of whose light what is in
-  /// front takes from what is behind: to second order its colour is that of the segment and of its mirror
-  /// image.
+  /// Colour between two positions in the table. A part of a step is more homogeneous than the whole, where the
+  /// front attenuates the light of the back: to second order, its colour is a mean of the segment's and of its
+  /// mirror image's.
   Rgba stretch(float front, float back, float length) const {
     Rgba colour = interpolated(*scene_.pairs, front, back);
     if (length < 1) {
@@ -189,7 +189,7 @@ class SegmentWalk {
     Rgba even = colour;
     for (std::size_t k = 0; k < 3; ++k) even[k] *= prepared_light.model.even[k];
     const double slope = square > 0 ? std::sqrt(square) : 0;
-    // Of an even field's colour here, of a lit one below.
+    // Gradient opacity; applied to the colour of a constant field here, and to a lit colour below.
     const auto fade = [&] {
       if (prepared_light.gradient_opacity.factors.empty()) return;
       const auto factor = float(prepared_light.gradient_opacity.at(slope));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the kernels share: a packet of rays goes in, premultiplied pixels come out. The generic kernel takes
-// every texel type, filter and operator and says plainly what is meant; the others are faster on one
-// combination and must give the same image.
+// The interface of the kernels: a packet of rays in, premultiplied pixels out. The generic kernels accept every
+// texel type, filter and operator and define the result; the others are faster on some combinations and must
+// give the same image.
 #pragma once
 
 #include <cstdint>
@@ -20,48 +20,47 @@
 
 namespace understudy::volume {
 
-/// Everything a kernel reads beside its rays. One of `table`, `map` and `pairs` is set, but both tables where
-/// `segments` are pre-integrated.
+/// All inputs of a kernel except its rays. Exactly one of `table`, `map` and `pairs` is set, except that
+/// `table` and `pairs` are both set for pre-integrated `segments`.
 struct Scene {
   const BrickStore* store = nullptr;
   const OccupancyMap* skip = nullptr;
   const TransferTable* table = nullptr;
-  const float* bounds = nullptr;  ///< per block what it can add to a maximum (block_bounds()); null: not known
+  const float* bounds = nullptr;  ///< per block its upper bound under a maximum (block_bounds()); null: unknown
   const LinearMap* map = nullptr;
   const PreIntegrationLookup* pairs = nullptr;
-  /// Surfaces, light and pre-integration: the scene is one for the kernels of segments; null: for the others.
+  /// Surfaces, light and pre-integration, for the segment kernels; null: for the other kernels.
   const SegmentScene* segments = nullptr;
-  /// Adaptive steps: what their parts show, and per block into how many they are divided; null: for other
-  /// kernels.
+  /// Adaptive steps: what their parts show, and per block how steps are divided; null: for the other kernels.
   const PartTable* parts = nullptr;
   const StepDivision* division = nullptr;
-  /// The store holds values beyond the ends of `pairs`: segments between such a value and one within are
-  /// parted.
+  /// The store holds values beyond the ends of `pairs`: segments that cross an end of the table are split
+  /// there.
   bool values_beyond = false;
-  /// With pairs: the second sample of a segment lies so many samples on, and then away by a vector of cells; it
-  /// is clamped to what the store holds, as are all places that segments look at.
+  /// With `pairs`: the second sample of a slice segment lies `samples_on` samples further along the ray, plus
+  /// `cells_away`. Its position is clamped to the texels held, like all positions at which segments sample.
   float samples_on = 0;
   std::array<float, 3> cells_away{};
   std::array<float, 3> held_low{};
   std::array<float, 3> held_high{};
-  const FogTable* fog = nullptr;  ///< null: the air is clear
-  bool cover_whole_ray = false;   ///< as of RaySteps
+  const FogTable* fog = nullptr;  ///< null: no fog
+  bool cover_whole_ray = false;   ///< as in RaySteps
   Operator op = Operator::over;
   Filter filter = Filter::linear;
   float termination = 0;
-  float opacity_limit = 1;           ///< as of RenderRequest
+  float opacity_limit = 1;           ///< as in RenderRequest
   std::array<float, 3> top{};        ///< positions are clamped to [0, top]
-  std::array<float, 3> rounding{};   ///< of positions, bounded
+  std::array<float, 3> rounding{};   ///< bounds of the rounding errors of positions
   std::array<bool, 3> has_border{};  ///< axes on which the border colour shows beyond [0, cells]
 };
 
-/// Early termination is tested once per so many samples: addresses then do not wait for opacities.
+/// Early termination is tested once per this many samples, so that addresses need not wait for opacities.
 constexpr int samples_between_tests = 8;
 
 struct KernelCounts {
   std::uint64_t samples_taken = 0;
   std::uint64_t rays_terminated = 0;
-  std::uint64_t samples_hidden = 0;  ///< that these had left
+  std::uint64_t samples_hidden = 0;  ///< remaining samples of the terminated rays
 };
 
 /// Writes the pixel of ray r to rgba + 4 r.
@@ -69,13 +68,13 @@ using Kernel = void (*)(const Scene& scene, const RayPacket& packet, float* rgba
 
 void generic_kernel(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts);
 
-/// On the best instruction set of this machine that Highway knows; the generic kernel where it knows none.
+/// Uses the best instruction set of this machine that Highway supports; falls back to the generic kernel.
 void vector_kernel(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts);
 
 /// The same two for segments.
 void generic_segments(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts);
 void vector_segments(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts);
-/// Of the latter, the part for scenes that are pre-integrated.
+/// Called by vector_segments() for pre-integrated scenes.
 void vector_pre_integrated_segments(const Scene& scene, const RayPacket& packet, float* rgba,
                                     KernelCounts& counts);
 

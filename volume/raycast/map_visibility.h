@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a block of colours can show anything under a map of colours.
+// Whether a block of colours can show anything under a linear map of colours.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace understudy::volume {
 
-/// Bounds of the mapped components over the ranges of a block's RGBA: never false where a sample shows.
+/// Bounds the mapped components over the ranges of a block's RGBA: never false where a sample shows.
 bool shows(const LinearMap& map, std::span<const BrickStore::Range> texels);
 
 }  // namespace understudy::volume

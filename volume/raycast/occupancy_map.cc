@@ -15,8 +15,7 @@ OccupancyMap::OccupancyMap(const std::array<int, 3>& counts, std::vector<bool> s
     }
   if (empty_bricks_ == 0) return;
 
-  // Two sweeps, each with the half of the 26 neighbours that it has passed already, are exact for this
-  // metric.
+  // Two sweeps, each over the half of the 26 neighbours that it has already passed, are exact for this metric.
   const auto relax = [&](int x, int y, int z, int direction) {
     std::uint8_t& here = distances_[(std::size_t(z) * ny + y) * nx + x];
     if (here == 0) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which blocks can be left out, and how far: per block the Chebyshev distance to the next block that shows
-// something, 0 for those that do. From a sample in a block of distance d, all blocks fewer than d steps away
+// Which blocks are empty, and how far a ray may skip: per block the Chebyshev distance to the nearest block
+// that shows something, 0 for those that do. Around a block of distance d, all blocks fewer than d blocks away
 // are empty. (Cohen, Sheffer 1994, proximity clouds; Deakin, Knackstedt 2020 for Chebyshev distance.)
 #pragma once
 
@@ -12,11 +12,11 @@ namespace understudy::volume {
 
 class OccupancyMap {
  public:
-  /// `shows` has one value per block of a box of `counts` blocks, x fastest; what lies outside the box is
-  /// empty.
+  /// `shows` has one value per block of a box of `counts` blocks, x fastest. Everything outside the box counts
+  /// as empty.
   OccupancyMap(const std::array<int, 3>& counts, std::vector<bool> shows);
 
-  /// Distances, saturated at 255, and three bytes that may be read after the last.
+  /// Distances, saturated at 255, followed by three padding bytes that may be read.
   const std::uint8_t* distances() const { return distances_.data(); }
   std::size_t empty_bricks() const { return empty_bricks_; }
   bool shows(std::size_t block) const { return distances_[block] == 0; }

@@ -29,12 +29,12 @@ Colour colour_between(const Colour& a, const Colour& b, double s) {
   return mixed;
 }
 
-/// Opacity as one of a medium, of which some light always passes.
+/// Clamps an opacity below 1, so that its optical depth is finite.
 double believed(double opacity) {
   return std::clamp(opacity, 0.0, 1 - std::numeric_limits<double>::epsilon() / 2);
 }
 
-/// The mean optical depth, for one step, of opacities between a and b.
+/// The mean optical depth of one step whose opacity varies linearly from a to b.
 double mean_depth(double a, double b) {
   a = believed(a);
   b = believed(b);
@@ -43,8 +43,8 @@ double mean_depth(double a, double b) {
   return (integral(b) - integral(a)) / (b - a);
 }
 
-/// Premultiplied colour of a layer with such opacity, of the medium of which one step shows `colour`; `way`
-/// steps of it, should it be clear.
+/// Premultiplied colour of a layer with opacity `opacity`, in a medium of which one step shows `colour`. `way`
+/// is the layer's length in steps, used where the medium is transparent.
 Colour layer(const Colour& colour, double opacity, double way) {
   constexpr double clear = 1e-12;
   Colour seen{0, 0, 0, opacity};
@@ -53,8 +53,8 @@ Colour layer(const Colour& colour, double opacity, double way) {
   return seen;
 }
 
-/// What a segment of `length` steps shows over which the entries change evenly from `front` to `back`, in
-/// `parts` parts of even colour.
+/// Colour of a segment of `length` steps over which the entries vary linearly from `front` to `back`, as
+/// `parts` parts of constant colour.
 Colour piece(const Colour& front, const Colour& back, double length, int parts) {
   Colour sum{};
   for (int part = 0; part < parts; ++part) {
@@ -80,7 +80,7 @@ void rising_segments(const std::vector<Colour>& entries, Segment segment) {
   }
   tbb::parallel_for(std::size_t(1), pieces + 1, [&](std::size_t count) {
     std::vector<Colour> piece_at(pieces), up_to(pieces), from(pieces);
-    // Within a group of `count` pieces: composed from its beginning up to each, and from each to its end.
+    // Within groups of `count` pieces: composites from the group's start up to each, and from each to its end.
     const int parts = count <= 2 ? 8 : count <= 8 ? 2 : 1;
     const double way = 1 / double(count);
     for (std::size_t i = 0; i < pieces; ++i)
@@ -97,7 +97,7 @@ void rising_segments(const std::vector<Colour>& entries, Segment segment) {
   });
 }
 
-/// By how much the slope of `function` changes from one entry to the next at most, in any component.
+/// The largest second difference of the entries of `function`, over all components.
 double sharpest_bend(const TransferFunction& function) {
   double sharpest = 0;
   for (std::size_t i = 1; i + 1 < function.entries.size(); ++i)

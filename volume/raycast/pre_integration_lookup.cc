@@ -58,7 +58,7 @@ std::vector<bool> blocks_with_slice_segments(const BrickStore& store, const PreI
       const int at = int(b / stride % std::size_t(count));
       const int low = std::max(at - reach[axis], 0), high = std::min(at + reach[axis], count - 1);
       for (int i = low; i <= high; ++i) {
-        // Without values, low is above high: such a block widens nothing.
+        // A block without values has low > high and widens nothing.
         const BrickStore::Range& other = before[b + std::size_t(i) * stride - std::size_t(at) * stride];
         within[b].low = std::min(within[b].low, other.low);
         within[b].high = std::max(within[b].high, other.high);

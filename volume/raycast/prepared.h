@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a ray caster makes of a classification before it casts rays, and keeps from image to image: tables,
-// which blocks show something (empty-space skipping), bounds of blocks, and the division of adaptive steps.
-// A part of ray_caster.cc.
+// What a ray caster prepares from a classification before it casts rays, and keeps from image to image: tables,
+// which blocks show something (empty-space skipping), bounds of blocks, and the division of adaptive steps. A
+// part of ray_caster.cc.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@
 
 namespace understudy::volume {
 
-/// So many blocks away from its front the back of a segment may lie.
+/// The most blocks between the front and the back of a slice segment, per axis.
 inline std::array<int, 3> blocks_in_reach(const VolumeDescription& volume,
                                           const std::optional<SliceSegment>& slice_segment) {
   std::array<int, 3> blocks{};
@@ -38,13 +38,13 @@ inline std::array<int, 3> blocks_in_reach(const VolumeDescription& volume,
   return blocks;
 }
 
-/// What the preparation of a request depends on beside its classification.
+/// What the preparation of a request depends on, apart from its classification.
 struct PreparedKey {
   bool keeps_clear_samples = false;  ///< under `min`
-  std::array<int, 3> reach{};        ///< of segments, in blocks
+  std::array<int, 3> reach{};        ///< of slice segments, in blocks
   bool pre_integrated = false;
   float tolerance = 0;        ///< of adaptive steps, otherwise 0
-  double step_cells = 0;      ///< their length
+  double step_cells = 0;      ///< length of adaptive steps
   bool skips = true;          ///< Optimizations::empty_bricks
   std::vector<float> levels;  ///< of surfaces, in units of the texel type
 
@@ -66,16 +66,16 @@ inline PreparedKey prepared_key_of(const VolumeDescription& volume, const Render
   return c;
 }
 
-/// What stays the same from image to image while classification and prepared key do.
+/// Reused from image to image as long as classification and prepared key stay the same.
 struct RayCaster::Prepared {
   Classification classification;
   PreparedKey prepared_key;
   std::optional<TransferTable> table;
   std::optional<PreIntegrationLookup> pairs;
   OccupancyMap skip;
-  std::optional<std::vector<float>> bounds;  ///< made for the first maximum
-  bool values_beyond = false;                ///< of the pre-integration table
-  std::optional<PartTable> parts;            ///< these two of adaptive steps
+  std::optional<std::vector<float>> bounds;  ///< computed for the first maximum
+  bool values_beyond = false;                ///< Scene::values_beyond
+  std::optional<PartTable> parts;            ///< this and `division`: for adaptive steps
   std::optional<StepDivision> division;
 
   bool visible(const BrickStore& store, std::size_t block) const {
@@ -101,7 +101,7 @@ struct RayCaster::Prepared {
 
   bool has_slice_segments() const { return pairs && !prepared_key.pre_integrated; }
 
-  /// Adds what was prepared to the scene of `request`.
+  /// Adds the prepared data to the scene of `request`.
   void complete(Scene& scene, const RenderRequest& request, const BrickStore& store) {
     scene.skip = &skip;
     scene.table = table ? &*table : nullptr;
@@ -132,7 +132,7 @@ struct RayCaster::Prepared {
   void blocks_changed(const BrickStore& store, std::span<const std::size_t> blocks) {
     divide_steps(store);
     if (has_slice_segments()) {
-      // A segment's far end may lie blocks away.
+      // The back of a segment may lie in another block.
       skip = occupancy_map(store);
       return;
     }
@@ -141,7 +141,7 @@ struct RayCaster::Prepared {
     if (prepared_key.pre_integrated)
       values_beyond = values_beyond || std::any_of(blocks.begin(), blocks.end(),
                                                    [&](std::size_t b) { return lies_beyond(store, b); });
-    // Distances reach far, but depend on nothing but which blocks show something.
+    // Distances depend only on which blocks show something.
     if (std::all_of(blocks.begin(), blocks.end(),
                     [&](std::size_t b) { return visible(store, b) == skip.shows(b); }))
       return;

@@ -29,7 +29,7 @@ namespace understudy::volume {
 
 namespace {
 
-/// The way from the first to the second sample, in the store's cells.
+/// Sets the offset from the first to the second sample, in the store's cells.
 void set_slice_segment(const SliceSegment& slice_segment, Scene& scene) {
   const BrickStore& store = *scene.store;
   scene.samples_on = float(slice_segment.planes);
@@ -37,7 +37,7 @@ void set_slice_segment(const SliceSegment& slice_segment, Scene& scene) {
     scene.cells_away[axis] = float(slice_segment.offset[axis] * store.description().size[axis]);
 }
 
-/// The places at which the store holds texels.
+/// Sets the range of positions at which the store holds texels.
 void set_held(Scene& scene) {
   const BrickStore& store = *scene.store;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -48,13 +48,13 @@ void set_held(Scene& scene) {
   }
 }
 
-/// What an image is drawn of, front to back.
+/// A part of the owned cells; an image is drawn from pieces, front to back.
 struct Piece {
   RaySetup setup;
   Rect pixels;
 };
 
-/// All cells owned at once, or, where segments are cut, brick by brick.
+/// All owned cells as one piece, or, where segments are cut at bricks, one piece per brick.
 std::vector<Piece> pieces_of(const RenderRequest& request, const BrickStore& store) {
   std::vector<Piece> pieces;
   const TexelBox& owned = store.owned_cells();
@@ -80,7 +80,7 @@ void compose_behind(float* front, const float* back, int pixels) {
   }
 }
 
-/// What the kernels know of a request and of the store, whatever its classification.
+/// The inputs of kernels that depend on the request and the store, but not on the classification.
 Scene scene_of(const RenderRequest& request, const BrickStore& store, const RaySetup& setup) {
   Scene scene;
   scene.store = &store;
@@ -103,14 +103,14 @@ Kernel kernel_of(const Scene& scene) {
   return scene.segments != nullptr ? vector_segments : vector_kernel;
 }
 
-/// One tile of one piece: `first` pieces are written, others composed behind what is there. Of a hidden tile
-/// samples are only counted.
+/// Renders one tile of one piece. The first piece (`first`) is written, others are composited behind the tile's
+/// pixels. For a hidden tile, samples are only counted.
 void render_tile(const Scene& scene, Kernel kernel, const RenderRequest& request, const Piece& piece,
                  bool first, const Rect& tile, bool hidden, Image& out, FrameCounts& mine) {
   RayPacket packet;
   alignas(64) std::array<float, 4 * packet_rays> rgba;
   for (int row = 0; row < tile.height; row += packet_height) {
-    // Who waits for the image may have given it up: the loop below asks no more often than once a range.
+    // The image may have been cancelled; the TBB loop that calls this checks only once per range.
     if (tbb::is_current_task_group_canceling()) return;
     const int rows = std::min(packet_height, tile.height - row);
     if (!set_up_packet(piece.setup, request, tile.x, tile.y + row, tile.width, rows, packet)) continue;
@@ -137,7 +137,7 @@ void render_tile(const Scene& scene, Kernel kernel, const RenderRequest& request
   }
 }
 
-/// All pixels, tile by tile on all cores. Adds up what was done.
+/// Renders all pixels, tile by tile on all cores. Returns the sum of the counts.
 FrameCounts render_tiles(const Scene& scene, const RenderRequest& request, const std::vector<Piece>& pieces,
                          const Rect& pixels, Occlusion* occlusion, Image& out) {
   const Kernel kernel = kernel_of(scene);
@@ -166,22 +166,22 @@ FrameCounts render_tiles(const Scene& scene, const RenderRequest& request, const
   return sum;
 }
 
-/// Between the pixels of rays that are cast for an estimate.
+/// Pixel spacing of the rays that are cast for an estimate.
 constexpr int estimate_spacing = 8;
 constexpr int estimate_spacing_bits = 3;
-/// What setting up a ray takes, in samples (docs/scaling.md: 42 and 3 ns).
+/// Cost of setting up a ray, in samples (docs/scaling.md: 42 and 3 ns).
 constexpr float samples_per_ray = 14;
 
-/// Of one tile, by some of the rays through it.
+/// Estimates the cost of one tile from some of the rays through it.
 float estimated_cost(const Scene& scene, Kernel kernel, const RenderRequest& request, const RaySetup& spread,
                      const Rect& tile) {
   RayPacket packet;
   alignas(64) std::array<float, 4 * packet_rays> rgba;
   KernelCounts done;
   int rays = 0;
-  // Rays whose pixels lie in the tile.
+  // Rays whose pixels lie in the tile. The shift in `first` rounds down, unlike a division.
   static_assert(estimate_spacing == 1 << estimate_spacing_bits);
-  const auto first = [](int low) { return (low + estimate_spacing / 2 - 1) >> estimate_spacing_bits; };  // down
+  const auto first = [](int low) { return (low + estimate_spacing / 2 - 1) >> estimate_spacing_bits; };
   const int left = first(tile.x), right = first(tile.x + tile.width);
   const int bottom = first(tile.y), top = first(tile.y + tile.height);
   for (int y = bottom; y < top; y += packet_height)

@@ -16,12 +16,12 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Products and sums stay unfused here: every node must round alike, whatever its instruction set.
+// Products and sums are not fused here: every node must round alike, whatever its instruction set.
 
 constexpr std::size_t region_bounds = 6;
 
-/// One row of rays, before samples outside the owned cells are dropped. `depth` has one value per pixel, or
-/// is null; so has `begins`, with steps: the place of the first sample.
+/// Sets up one row of rays, before samples outside the owned cells are dropped. `depth` has one value per
+/// pixel, or is null. With steps, `begins` has the position of the first sample of every pixel, in steps.
 void set_up_row(const RaySetup& setup, const double* depth, const double* begins, bool depth_or_equal,
                 std::array<double, 2> depth_range, int x, int y, int width, std::size_t at_row,
                 RayPacket& packet) {
@@ -47,7 +47,7 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
     auto meets = hn::And(hn::Gt(hn::Abs(det), hn::Set(d, setup.smallest_det)),
                          hn::Lt(hn::Iota(d, double(column)), hn::Set(d, double(width))));
 
-    // value + i slope >= 0 after both took the sign of det.
+    // Keeps the indices i with value + i slope >= 0, after multiplying both by the sign of det.
     const auto limit = [&](V value, V slope, bool strict) HWY_ATTR {
       value = hn::Mul(sign, value);
       slope = hn::Mul(sign, slope);
@@ -81,7 +81,7 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
         high = before;
       }
     }
-    V part = one;  // of the index, from sample to sample
+    V part = one;  // index distance between two samples
     V first = hn::Ceil(low), last = hn::Floor(high);
     V begin = first, end = last;  // of segments
     if (setup.steps) {
@@ -100,7 +100,7 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
         meets = hn::And(meets, hn::Ge(parts, one));
         part = hn::Div(way, parts);
       }
-      V whole = zero;  // in steps
+      V whole = zero;  // length of the ray, in steps
       if (setup.steps->cover_whole_ray) {
         entry = low;
         high = hn::Min(high, hidden_from);
@@ -134,7 +134,7 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
     } else {
       low = first;
     }
-    // Where no sample lies between begin and end, a piece of a segment may.
+    // Even if no sample lies between begin and end, a piece of a segment may.
     meets =
         hn::And(meets, setup.segments ? hn::Or(hn::Le(first, last), hn::Lt(begin, end)) : hn::Le(first, last));
 
@@ -178,7 +178,7 @@ HWY_EXPORT(set_up_row);
 
 namespace {
 
-/// A vector that is linear in the pixel.
+/// A vector that is linear in the pixel coordinates.
 struct LinearVector {
   Vec3 c, x, y;
 };
@@ -194,14 +194,14 @@ LinearInPixel times(double factor, const LinearInPixel& a) {
   return {factor * a.c, factor * a.x, factor * a.y};
 }
 
-/// Planes across all rays through the viewport, one unit of the index apart, with rising depth; plane 0 goes
-/// through the middle of the region.
+/// Planes that intersect all rays through the viewport, one unit of the index apart, with increasing depth.
+/// Plane 0 passes through the centre of the region.
 SlicePlanes planes_across(const RenderRequest& request, const LinearVector& direction, const Vec3& across_eye) {
   const auto direction_at = [&](double x, double y) {
     return add(direction.c, add(scale(direction.x, x), scale(direction.y, y)));
   };
-  // Planes that face the eye never run along a ray; where the eye is (nearly) at infinity they are rounding
-  // alone, and the direction of view itself serves.
+  // Planes that face the eye are never parallel to a ray. If the eye is (nearly) at infinity, they are only
+  // rounding noise, and the view direction is used instead.
   SlicePlanes planes;
   double best = -1;
   for (const Vec3& normal : {across_eye, direction_at(0, 0)}) {
@@ -220,7 +220,7 @@ SlicePlanes planes_across(const RenderRequest& request, const LinearVector& dire
   const Matrix4& m = request.texture_to_clip;
   const Vec3 middle = scale(add(request.region.low, request.region.high), 0.5);
   const Vec4 clip = transform_point(m, middle);
-  // The sign of d(z / w) along the normal, at the middle of the image.
+  // The sign of d(z / w) along the normal, at the centre of the image.
   const Vec3 ray = direction_at(0, 0);
   const double z = m[8] * ray[0] + m[9] * ray[1] + m[10] * ray[2];
   const double w = m[12] * ray[0] + m[13] * ray[1] + m[14] * ray[2];
@@ -231,8 +231,8 @@ SlicePlanes planes_across(const RenderRequest& request, const LinearVector& dire
   return planes;
 }
 
-/// Smallest k in [least, count] from which on `reached` holds (count: never), for a condition that stays once
-/// it holds.
+/// Smallest k in [least, count] from which on `reached` holds (count: never), for a monotone condition: once
+/// true, it stays true.
 template <typename Reached>
 int first_reached(int least, int count, double guess, Reached reached) {
   const auto at = [&](int k) { return k >= count || (k >= least && reached(k)); };
@@ -250,7 +250,7 @@ int first_reached(int least, int count, double guess, Reached reached) {
   return low;
 }
 
-/// Lets ray `r` begin and end where it enters and leaves the owned cells.
+/// Clips ray `r` to where it enters and leaves the owned cells.
 void cut_to_owned(const RaySetup& setup, RayPacket& packet, std::size_t r) {
   float begin = packet.begin[r], end = packet.end[r];
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -277,8 +277,9 @@ void cut_to_owned(const RaySetup& setup, RayPacket& packet, std::size_t r) {
   packet.last[r] = int(std::ceil(end)) - 1;
 }
 
-/// Narrows the samples of ray `r` to those in the owned cells. Positions are monotone in k on every axis, in
-/// float arithmetic too, so these are one interval; it is found with the very arithmetic that samples.
+/// Narrows the samples of ray `r` to those in the owned cells. Positions are monotone in k on every axis, even
+/// in float arithmetic, so these form one interval. It is found with the same arithmetic that computes
+/// positions.
 void keep_owned(const RaySetup& setup, RayPacket& packet, std::size_t r) {
   if (setup.cut) cut_to_owned(setup, packet, r);
   int first = packet.first[r], last = packet.last[r];
@@ -306,7 +307,7 @@ void keep_owned(const RaySetup& setup, RayPacket& packet, std::size_t r) {
     if (setup.low_is_bound[axis]) narrow(setup.owned_low[axis], true);
     if (setup.high_is_bound[axis]) narrow(setup.owned_high[axis], false);
   }
-  // Another rank's sample is the ray's last one.
+  // The last sample of the ray belongs to another rank.
   if (setup.steps && setup.steps->cover_whole_ray && last < packet.last[r]) packet.last_length[r] = 1;
   packet.first[r] = first;
   packet.last[r] = last;
@@ -325,7 +326,7 @@ RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store, const 
   const Vec3 a0 = row(0), a1 = row(1), a3 = row(3);
   const double w0 = m[3], w1 = m[7], w3 = m[15];
 
-  // The ray's direction, and where it meets the plane through the origin: both times det.
+  // The ray's direction, and its intersection with the plane through the origin, both times det.
   const LinearVector direction{cross(a0, a1), cross(a1, a3), cross(a3, a0)};
   const SlicePlanes planes = request.steps ? planes_across(request, direction, a3) : request.planes;
   const Vec3& n = planes.normal;

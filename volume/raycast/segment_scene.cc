@@ -66,7 +66,7 @@ bool regular(const std::array<double, 9>& m) {
   return std::abs(dot(a, cross(b, c))) > 1e-9 * length(a) * length(b) * length(c);
 }
 
-/// Of a regular matrix.
+/// Inverts a regular matrix.
 std::array<double, 9> inverse_of(const std::array<double, 9>& m) {
   const Vec3 a = row_of(m, 0), b = row_of(m, 1), c = row_of(m, 2);
   const std::array<Vec3, 3> columns{cross(b, c), cross(c, a), cross(a, b)};
@@ -78,9 +78,9 @@ std::array<double, 9> inverse_of(const std::array<double, 9>& m) {
   return inverse;
 }
 
-/// How far, in cells along an axis, a ray of the image goes from plane to plane at most; infinite where rays
-/// run along the planes. Directions of rays are linear in the pixel's position, so that the ratio of their
-/// parts along an axis and across the planes is largest in a corner.
+/// Upper bound, in cells along each axis, of the distance that a ray of the image covers from plane to plane;
+/// infinite where rays are parallel to the planes. Ray directions are linear in the pixel's position, so the
+/// ratio of their components along an axis and across the planes is largest in a corner.
 std::array<double, 3> reach_between_planes(const VolumeDescription& volume, const RenderRequest& request) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr std::array<double, 3> endless{infinity, infinity, infinity};
@@ -118,7 +118,7 @@ bool walks_segments(const RenderRequest& request) {
 
 int ghost_layer_needed(const VolumeDescription& volume, const RenderRequest& request) {
   if (request.bound_of && request.steps) {
-    // A sample may stand for a step and a half, around which second differences are looked at.
+    // A sample may represent 1.5 steps, around which second differences are taken.
     const std::array<double, 3> reach = step_reach(volume, request);
     return int(std::min(std::ceil(1.5 * *std::ranges::max_element(reach)) + 2, 1e9));
   }
@@ -135,7 +135,7 @@ int ghost_layer_needed(const VolumeDescription& volume, const RenderRequest& req
 std::array<double, 3> step_reach(const VolumeDescription& volume, const RenderRequest& request) {
   if (request.steps->between_planes()) return reach_between_planes(volume, request);
   const std::array<double, 9> inverse = inverse_of(request.steps->metric);
-  // A ray of L steps that is divided into floor(L + rounding) parts has parts of less than 2 - rounding steps.
+  // A ray of L steps divided into floor(L + rounding) parts has parts of less than 2 - rounding steps.
   const double part = request.steps->divided ? 2 - request.steps->rounding : 1;
   std::array<double, 3> reach{};
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -231,8 +231,8 @@ Vec3 PreparedLight::to_eye(const std::array<float, 3>& step) const {
   return distance > 0 ? scale(eye, 1 / distance) : Vec3{};
 }
 
-// Gradients are covectors: their image under the inverse transpose, times a direction, is they themselves times
-// the direction's image under the inverse.
+// Gradients are covectors: the dot product of a gradient's image (under the inverse transpose) with a direction
+// equals that of the gradient with the direction's image under the inverse.
 std::array<float, 3> PreparedLight::over_gradients(const Vec3& direction) const {
   const Vec3 v = transformed(inverse_, direction);
   return {float(v[0] * size_[0]), float(v[1] * size_[1]), float(v[2] * size_[2])};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces, light and pre-integration made ready for a kernel: in units of the texel type, and of cells.
+// Surfaces, light and pre-integration prepared for a kernel: in units of the texel type, and of cells.
 #pragma once
 
 #include <array>
@@ -15,21 +15,21 @@ namespace understudy::volume {
 
 struct RenderRequest;
 
-/// Whether what lies between a request's samples counts: it has surfaces, segments or adaptive steps.
+/// Whether intervals between samples are integrated: for surfaces, pre-integration or adaptive steps.
 bool has_segments(const RenderRequest& request);
 
-/// Whether a request has surfaces, light, segments or adaptive steps; other requests know nothing of all this.
+/// Whether the request has surfaces, light, pre-integration or adaptive steps.
 bool walks_segments(const RenderRequest& request);
 
-/// How far from its own cells a rank looks for the sake of segments and gradients, in cells: the volume's
-/// ghost layer must be no smaller. Of steps between planes it depends on the camera; elsewhere
-/// their metric must not be singular.
+/// The ghost layer that segments and gradients need, in cells: how far beyond its own cells a rank samples. The
+/// volume's ghost layer must be no smaller. For steps between planes it depends on the camera; otherwise their
+/// metric must not be singular.
 int ghost_layer_needed(const VolumeDescription& volume, const RenderRequest& request);
 
-/// How far one step leads along each axis, at most, in cells.
+/// Upper bound of the length of a step along each axis, in cells.
 std::array<double, 3> step_reach(const VolumeDescription& volume, const RenderRequest& request);
 
-/// Throws std::invalid_argument when surfaces, light or method make no sense on `volume`.
+/// Throws std::invalid_argument when surfaces, light or method are invalid for `volume`.
 void validate_segments(const VolumeDescription& volume, const RenderRequest& request);
 
 /// A surface; its colour is premultiplied.
@@ -38,16 +38,16 @@ struct Level {
   Rgba colour{};
 };
 
-/// A light over gradients g per cell. With |g| = sqrt(g . metric g), the cosine between normal and light is
-/// -g . light / |g|, and that between normal and h is -g . half / |g|.
+/// A light in terms of gradients g per cell. With |g| = sqrt(g . metric g), the cosine between normal and light
+/// is -g . light / |g|, and the cosine between normal and h is -g . half / |g|.
 struct PreparedLight {
   PreparedLight(const Light& light, const VolumeDescription& volume);
 
-  /// `half` of a ray that goes along `step` (in cells); zero where there is none.
+  /// `half` of a ray with direction `step` (in cells); zero if undefined.
   std::array<float, 3> half(const std::array<float, 3>& step) const;
   /// `light` of the same ray.
   std::array<float, 3> light(const std::array<float, 3>& step) const;
-  /// The model's response, which is not empty, at a cosine.
+  /// The model's response at a cosine; it must not be empty.
   LightResponse response_at(float cosine) const;
 
   Light model;
@@ -61,7 +61,7 @@ struct PreparedLight {
   Vec3 to_eye(const std::array<float, 3>& step) const;
   std::array<float, 3> over_gradients(const Vec3& direction) const;
 
-  Vec3 direction_{};  ///< of length 1, or zero
+  Vec3 direction_{};  ///< unit vector, or zero
   std::array<double, 9> inverse_{};
   Vec3 size_{};
 };
@@ -69,7 +69,7 @@ struct PreparedLight {
 struct SegmentScene {
   SegmentScene(const VolumeDescription& volume, const RenderRequest& request);
 
-  std::vector<Level> levels;  ///< rising
+  std::vector<Level> levels;  ///< ascending
   bool pre_integrated = false;
   bool lit_samples = false;
   std::optional<PreparedLight> prepared_light;

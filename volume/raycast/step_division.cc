@@ -12,13 +12,13 @@ namespace understudy::volume {
 
 namespace {
 
-/// So many pieces, a whole number for each piece of `function`, where it has not got more already.
+/// Number of pieces: a multiple of the pieces of `function`, at least `least`.
 std::size_t pieces_of(const TransferFunction& function, std::size_t least) {
   const std::size_t given = function.entries.size() - 1;
   return given * ((std::max(least, given) + given - 1) / given);
 }
 
-/// Sums of how sharply a function bends, and of how far it goes, over ranges of its entries.
+/// Prefix sums of the second differences (bends) and first differences (changes) of a function's entries.
 class Roughness {
  public:
   explicit Roughness(const TransferFunction& function) {
@@ -41,8 +41,8 @@ class Roughness {
 
   double last() const { return double(bends_.size() - 2); }
 
-  /// The error of one sample for a step on which the value changes by `change` entries, somewhere between two
-  /// places, which is `cells` long.
+  /// Estimates the error of one sample for a step of `cells` cells on which the value changes by `change`
+  /// entries, between the positions `low` and `high`.
   double error(double low, double high, double change, double cells) const {
     const auto first = std::size_t(std::floor(std::clamp(low, 0.0, last()))),
                beyond = std::size_t(std::ceil(std::clamp(high, 0.0, last()))) + 1;
@@ -53,7 +53,7 @@ class Roughness {
   std::vector<double> bends_{0}, changes_{0};  // of all entries before
 };
 
-/// The greatest change from texel to texel.
+/// The largest difference between neighbouring texels.
 template <typename Texel>
 float steepest(const std::byte* block) {
   std::array<Texel, BrickStore::block_texels> texels;
@@ -64,7 +64,7 @@ float steepest(const std::byte* block) {
     for (std::size_t i = 0; i < texels.size(); ++i) {
       if (i / strides[axis] % BrickStore::block_row == BrickStore::block_row - 1) continue;
       const float change = std::abs(float(texels[i + strides[axis]]) - float(texels[i]));
-      if (change > most) most = change;  // never of what is no number
+      if (change > most) most = change;  // false for NaN
     }
   return most;
 }
@@ -86,7 +86,7 @@ float steepest(const BrickStore& store, std::size_t block) {
   return 0;
 }
 
-/// Class c >= 1 is of steps on which the value changes by up to so many entries.
+/// Upper bound of the change of the value over a step of class c >= 1, in entries.
 double change_of_class(int c) {
   return std::exp2(0.5 * (c - 1) - 8);
 }
@@ -135,7 +135,7 @@ StepDivision::StepDivision(const BrickStore& store, const TransferFunction& func
     const double wanted = std::ceil(2 * (std::log2(change) + 8)) + 1;
     classes_[b] = std::uint8_t(std::clamp(wanted, 1.0, classes_at_all - 1.0));
   });
-  const double entries = roughness.last() / (bins - 1);  // a bin
+  const double entries = roughness.last() / (bins - 1);  // per bin
   for (int c = 1; c < classes_at_all; ++c)
     for (int bin = 0; bin < bins; ++bin) {
       const double change = change_of_class(c);

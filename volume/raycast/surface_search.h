@@ -1,35 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where on a segment the field passes a value: between two ends on different sides of it, by the rule of false
-// position (in the Illinois form, which halves the value at an end that stays), and by bisection where that is
-// slow. A field may be even at the very value: it passes where it comes to have it, or ceases to.
+// Finds where a segment crosses a value of the field: between two ends on different sides of it, by regula
+// falsi (Illinois variant, which halves the value at an end that stays), and by bisection if that converges
+// slowly. If the field equals the value over an interval, the crossing is where it begins or ceases to.
 #pragma once
 
 #include <cmath>
 
 namespace understudy::volume {
 
-/// The search ends when the point is known to so many cells.
+/// The search ends when the position is known to this many cells.
 constexpr float surface_tolerance = 2e-4F;
-/// From a point that has the very value the search goes on with one so many tolerances away.
+/// From a position with exactly the value sought, the search continues this many tolerances away.
 constexpr float surface_nudge = 0.125F;
-/// After so many rounds it bisects, and after so many more it ends: 2^-18 of a segment.
+/// After this many rounds it bisects, for this many more at most: 2^-18 of a segment.
 constexpr int false_positions = 6;
 constexpr int bisections = 18;
 
-/// What is left of a segment in front of which the search has come.
+/// The rest of a segment, behind the positions already found.
 struct SurfaceSearch {
-  float front = 0;  ///< as a share of the segment
+  float front = 0;  ///< as a fraction of the segment
   float at_front = 0;
   float at_back = 0;
 
-  /// Moves the front to where the field passes `level`, which lies between the values at front and back. The
-  /// segment is `cells` long; value_at(share) is the field on it. False where the field is not a number on the
-  /// way.
+  /// Moves the front to where the field crosses `level`, which lies between the values at front and back. The
+  /// segment is `cells` long; value_at(share) is the field on it. Returns false if the field is NaN on the way.
   template <typename ValueAt>
   bool find(float level, float cells, ValueAt value_at) {
     const bool above = at_front >= level;
     float a = front, b = 1, at_a = at_front - level, at_b = at_back - level;
-    int stays = 0;  // -1: the back has moved, 1: the front has
+    int stays = 0;  // which end moved last; -1: the back, 1: the front
     for (int round = 0; round < false_positions + bisections && (b - a) * cells > surface_tolerance; ++round) {
       float share = 0.5F * (a + b);
       if (round < false_positions) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a request can be rendered: validate() of ray_caster.h.
+// Implements validate() of ray_caster.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -105,7 +105,7 @@ void validate_steps(const RaySteps& steps, const Box& region) {
   if (!(most <= max_planes)) refuse("rays of {} steps (at most {} are possible)", most, max_planes);
 }
 
-/// What RaySteps::cover_whole_ray is for.
+/// Checks the requirements of RaySteps::cover_whole_ray.
 void validate_whole_rays(const RenderRequest& request) {
   if (!request.steps || !request.steps->cover_whole_ray || may_cover_whole_rays(request)) return;
   refuse(
@@ -131,7 +131,7 @@ void validate_bound(const VolumeDescription& volume, const RenderRequest& reques
         cells, volume.ghost_layer);
 }
 
-/// Samples beyond the region must not lie in texels that only others hold, and not in segments.
+/// Samples beyond the region must not lie in texels that only other ranks hold, nor in segments.
 void validate_count(const VolumeDescription& volume, const RenderRequest& request) {
   const auto& steps = request.steps;
   if (!steps) return;
@@ -216,7 +216,7 @@ void validate_planes(const SlicePlanes& planes) {
   if (!(length(planes.normal) > 0)) refuse("the slice planes have no direction");
 }
 
-/// Where samples lie: with steps, all of the planes but their number is left alone.
+/// Checks where samples lie. With steps, the planes are ignored except for their number.
 void validate_places(const RenderRequest& request) {
   if (request.steps)
     validate_steps(*request.steps, request.region);
@@ -227,7 +227,7 @@ void validate_places(const RenderRequest& request) {
     refuse("{} slice planes (0 to {} are possible)", planes.count, max_planes);
 }
 
-/// What of the volume is shown: the region of the slices, on one side of each clip plane.
+/// Checks the visible part of the volume: the region of the slices, and the clip planes.
 void validate_region(const VolumeDescription& volume, const RenderRequest& request) {
   if (!are_finite(request.region.low) || !are_finite(request.region.high))
     refuse("the region of the slices holds a value that is not finite");
@@ -245,7 +245,7 @@ void validate_region(const VolumeDescription& volume, const RenderRequest& reque
       refuse("a clip plane holds a value that is not finite");
 }
 
-/// Where rays end.
+/// Checks where rays end.
 void validate_ends(const RenderRequest& request) {
   if (!(request.termination >= 0 && request.termination < 1))
     refuse("termination threshold {} is outside [0, 1)", request.termination);

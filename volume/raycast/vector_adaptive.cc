@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that the generic adaptive kernel does, on the vector instructions of the machine it runs on. Parts of
-// steps queue up, eight of every ray at a time, and are then taken as vector_kernel.cc takes samples.
+// The generic adaptive kernel on the vector instructions of the machine. Eight parts of steps per ray are
+// queued, and then sampled as vector_kernel.cc takes samples.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +17,7 @@
 #define HWY_TARGET_INCLUDE "volume/raycast/vector_adaptive.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// After highway.h, which says for which instruction set.
+// After highway.h, which defines the instruction set.
 #include <hwy/contrib/math/math-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -48,14 +48,14 @@ struct AdaptiveConstants : SegmentConstants {
     bins_an_entry = hn::Set(f, float(StepDivision::bins - 1) / parts.last());
   }
 
-  const std::int32_t *classes, *divisions;  // a byte each; four are gathered
+  const std::int32_t *classes, *divisions;  // a byte each; gathered four at a time
   Ints entries_of_division;
   Floats bins_an_entry;
 };
 
 HWY_INLINE Floats place_of(Floats value, const AdaptiveConstants& constants) {
   const Floats place = hn::Mul(hn::Sub(value, constants.table_low), constants.table_scale);
-  return hn::Min(hn::Max(place, hn::Zero(FloatTag())), constants.table_last);  // 0 where it is no number
+  return hn::Min(hn::Max(place, hn::Zero(FloatTag())), constants.table_last);  // 0 for NaN
 }
 
 HWY_INLINE Ints classes_at(const Located& at, const AdaptiveConstants& constants) {
@@ -65,7 +65,7 @@ HWY_INLINE Ints classes_at(const Located& at, const AdaptiveConstants& constants
   return hn::And(hn::GatherOffset(d, constants.classes, block), hn::Set(d, 255));
 }
 
-/// How often steps of these classes, in whose middle the field has such values, are halved.
+/// How often steps of these classes are halved, by the field's value in their middle.
 HWY_INLINE Ints divisions_of(Ints of_block, Floats value, const AdaptiveConstants& constants) {
   const IntTag d;
   const Ints bin = truncated(hn::Mul(place_of(value, constants), constants.bins_an_entry));
@@ -77,12 +77,12 @@ HWY_INLINE Ints divisions_of(Ints of_block, Floats value, const AdaptiveConstant
 struct PartQueue {
   std::size_t count = 0;
   std::array<Floats, samples_between_tests> u;
-  std::array<Floats, samples_between_tests> value;  // where it is known
+  std::array<Floats, samples_between_tests> value;  // if known
   std::array<bool, samples_between_tests> known{};
   std::array<Floats, samples_between_tests> length;  // of their steps
   std::array<Ints, samples_between_tests> first_entry;
   std::array<Mask, samples_between_tests> present;
-  bool cut = false;  // some step is shorter
+  bool cut = false;  // some step is clipped
 };
 
 template <typename Source>
@@ -134,7 +134,7 @@ HWY_INLINE void show_parts(const SegmentPacket& rays, PartQueue& queue, const Ad
   queue.cut = false;
 }
 
-/// Eight steps of every ray. Adds the parts that they are taken in to `taken`.
+/// Takes eight steps of every ray. Adds the number of parts sampled to `taken`.
 template <typename Source>
 HWY_INLINE void take_steps(SegmentPacket& rays, const AdaptiveConstants& constants, Source source, Ints& taken,
                            Colours& pixels) {
@@ -148,7 +148,7 @@ HWY_INLINE void take_steps(SegmentPacket& rays, const AdaptiveConstants& constan
   std::array<Floats, samples_between_tests + 1> u;
   for (std::size_t i = 0; i <= samples_between_tests; ++i)
     u[i] = on_ray(rays, hn::Add(rays.k, hn::Set(f, float(i))));
-  // In the middles of all steps, which for those that are not divided is all that is needed.
+  // Samples the middles of all steps; undivided steps need no other samples.
   std::array<Located, samples_between_tests> located;
   std::array<Floats, samples_between_tests> middle, value;
   std::array<Ints, samples_between_tests> divisions;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// What samples add to the pixels of their rays: places in the transfer function, colours, and how they are
-// blended. A part of vector_field-inl.h, included there once per instruction set, behind the field.
+// What samples add to the pixels of their rays: positions in the transfer function, colours, and blending. A
+// part of vector_field-inl.h, included there once per instruction set, after the field.
 
-/// What a sample adds to its ray's pixel. Scalars: a place in the table, whose entries are loaded when they
-/// are blended.
+/// The contribution of a scalar sample to its ray's pixel: a position in the table, whose entries are loaded
+/// during blending.
 struct TablePlace {
   alignas(64) std::array<std::uint32_t, lanes> entry;  // as an index of floats
-  Floats between;                                      // fraction of the way to the next entry
+  Floats between;                                      // fraction of the distance to the next entry
 };
 
-/// Colours: premultiplied, components side by side, one vector per column.
+/// Premultiplied colours, components side by side, one vector per column.
 using Colours = std::array<Floats, 4>;
 
-/// Where a value stands in the transfer function; `absent` ones leave the composite as it is, and so do those
-/// that are no number.
+/// Finds the position of a value in the transfer function. `absent` values and NaN leave the composite
+/// unchanged.
 template <typename Source>
 HWY_INLINE void look_up(Floats value, hn::Mask<FloatTag> absent, const Constants& constants, Source,
                         TablePlace& out) {
@@ -29,7 +29,7 @@ HWY_INLINE void look_up(Floats value, hn::Mask<FloatTag> absent, const Constants
   hn::Store(hn::BitCast(u, hn::ShiftLeft<3>(chosen)), u, out.entry.data());
 }
 
-/// The field at a located sample, with its border.
+/// The field at a located sample, including its border.
 template <typename Source>
 HWY_INLINE Floats value_of(const Located& at, const Constants& constants, Source source) {
   const Floats value = field_at(at, constants, source);
@@ -42,11 +42,11 @@ HWY_INLINE void classify(const Located& at, const Packet& rays, const Constants&
   look_up(value_of(at, constants, source), hn::Gt(rays.k, rays.last), constants, source, out);
 }
 
-/// Texels of four bytes: the components of column q's rays at one edge, interpolated along x.
+/// Texels of four bytes: one edge of the cells of column q's rays, interpolated along x, per component.
 template <std::size_t q>
 HWY_INLINE Floats colour_edge(const Corners& corners, std::size_t offset, Ints weights) {
   const ByteTag d;
-  // Both texels' reds, greens, blues and alphas beside each other, widened to 16 bits.
+  // Reds, greens, blues and alphas of both texels side by side, widened to 16 bits.
   alignas(16) static constexpr std::uint8_t interleave[16] = {0, 128, 4, 128, 1, 128, 5, 128,
                                                               2, 128, 6, 128, 3, 128, 7, 128};
   const Bytes both =
@@ -73,7 +73,7 @@ HWY_INLINE Floats colour_of_column(const Corners& corners, const Located& at, Fl
   const Floats one = hn::Set(f, 1.0F);
   colour = hn::Min(hn::Max(colour, hn::Zero(f)), one);
   const Floats alpha = hn::Broadcast<3>(colour);
-  // Times alpha where the map asks for it.
+  // Multiplies by alpha if the map requires it.
   const Floats otherwise = hn::Sub(one, constants.scaled_by_alpha);
   const Floats premultiplied = hn::Mul(colour, hn::MulAdd(alpha, constants.scaled_by_alpha, otherwise));
   const auto shown =
@@ -92,7 +92,7 @@ HWY_INLINE void classify(const Located& at, const Packet& rays, const Constants&
   out[3] = colour_of_column<3>(corners, at, present, constants);
 }
 
-/// The rows, of eight floats, at which column q's rays stand in a table.
+/// Interpolates rows of eight floats of a table at the positions of column q's rays.
 template <std::size_t q>
 HWY_INLINE Floats interpolated_row(const TablePlace& at, const float* table) {
   const FloatTag f;
@@ -113,7 +113,7 @@ HWY_INLINE Floats colour_at(const Colours& at, const Constants&) {
   return at[q];
 }
 
-/// Under `over`, where a pixel takes no more once it is opaque to a limit.
+/// Composites under `over`; a pixel whose opacity has reached the limit stays unchanged.
 HWY_INLINE Floats composed_to_limit(Floats pixel, Floats colour, Floats limit) {
   const Floats alpha = hn::Broadcast<3>(pixel);
   const Floats room = hn::IfThenElseZero(hn::Lt(alpha, limit), hn::Sub(hn::Set(FloatTag(), 1.0F), alpha));
@@ -123,7 +123,7 @@ HWY_INLINE Floats composed_to_limit(Floats pixel, Floats colour, Floats limit) {
 template <Operator op>
 HWY_INLINE Floats composed(Floats pixel, Floats colour) {
   if constexpr (op == Operator::over) {
-    // Opacity itself is accumulated, not transparency: thin fog must not vanish beside 1.
+    // Accumulates opacity, not transparency: thin fog must not be lost by rounding next to 1.
     const Floats room = hn::Sub(hn::Set(FloatTag(), 1.0F), hn::Broadcast<3>(pixel));
     return hn::MulAdd(room, colour, pixel);
   } else if constexpr (op == Operator::add) {
@@ -143,7 +143,7 @@ HWY_INLINE Floats composed(Floats pixel, Floats colour) {
   }
 }
 
-/// Alpha of every ray, from the blended layout to one lane per ray.
+/// Alpha of every ray, from the blending layout to one lane per ray.
 HWY_INLINE Floats alphas(const std::array<Floats, 4>& pixels) {
   const FloatTag f;
   const hn::Repartition<double, FloatTag> wide;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the vector kernels share: packets of rays, the field where they are, and colours. A part of
+// Shared by the vector kernels: packets of rays, the field at their positions, and colours. A part of
 // vector_kernel.cc and vector_segments-inl.h, included there once per instruction set.
 //
-// A packet is 4 rays wide and one row high per 128 bits of the vector; lane q + 4 g is the ray in column q,
-// row g.
+// A packet is 4 rays wide and one row high per 128 bits of the vector; lane q + 4 g is the ray in column q, row
+// g.
 //
-// The corners of a cell lie close together in its block, so that no gather is needed: for bytes two loads of
+// The corners of a cell lie close together in its block, so that no gather is needed: for bytes, two loads of
 // 16 bytes, a shuffle and one 16-bit multiply-add interpolate four edges along x, with weights of 15 bits.
 // Colours are blended ray by ray, components side by side: a table entry is one load.
 
@@ -23,7 +23,7 @@ constexpr std::size_t lanes = HWY_MAX_BYTES / sizeof(float);
 constexpr std::size_t rows = lanes / 4;
 static_assert(packet_height % rows == 0 && tile_width % 4 == 0);
 
-/// 128 bits from each of the addresses from[q], from[q + 4], ..., `offset` elements on.
+/// Loads 128 bits from each of the addresses from[q], from[q + 4], ..., plus `offset` elements.
 template <std::size_t q, class D, typename T = hn::TFromD<D>>
 HWY_INLINE hn::Vec<D> load_column(D d, const T* const* from, std::size_t offset) {
   if constexpr (rows == 1) {
@@ -51,8 +51,8 @@ HWY_INLINE Ints pairwise_products(Ints a, Ints b) {
                                        unused);
 }
 
-/// Four vectors of one block per ray, an edge in each lane, become four vectors of one edge each, a ray in
-/// each lane.
+/// Transposes four vectors with one 128-bit block per ray and one edge per lane into four vectors of one edge
+/// each, with one ray per lane.
 HWY_INLINE void transpose(std::array<Floats, 4>& v) {
   const FloatTag narrow;
   const hn::Repartition<double, FloatTag> wide;
@@ -70,7 +70,7 @@ HWY_INLINE Floats mix(Floats a, Floats b, Floats s) {
   return hn::MulAdd(s, hn::Sub(b, a), a);
 }
 
-/// Truncation of values that are known to fit, without the care for others that ConvertTo takes.
+/// Truncates values that are known to fit, without ConvertTo's handling of others.
 HWY_INLINE Ints truncated(Floats v) {
 #if HWY_TARGET <= HWY_AVX3
   return Ints{_mm512_cvttps_epi32(v.raw)};
@@ -81,7 +81,7 @@ HWY_INLINE Ints truncated(Floats v) {
 #endif
 }
 
-/// The sum of counts.
+/// The sum of all lanes.
 HWY_INLINE std::uint64_t total(Ints counts) {
   alignas(64) std::array<std::int32_t, lanes> by_lane;
   hn::Store(counts, IntTag(), by_lane.data());
@@ -90,15 +90,15 @@ HWY_INLINE std::uint64_t total(Ints counts) {
   return sum;
 }
 
-/// Texels as the kernel reads them. Interpolation along x in 16-bit integers has the weights -2^15 (1 - s)
-/// and -2^15 s, because one is representable that way, and a power of two leaves texel values exact; `factor`
-/// and `zero` say how its results relate to texel values: result = factor * (value - zero).
+/// Texels as the kernel reads them. Interpolation along x in 16-bit integers uses the weights -2^15 (1 - s) and
+/// -2^15 s, because -2^15 is representable (+2^15 is not), and a power of two keeps texel values exact.
+/// `factor` and `zero` relate the results to texel values: result = factor * (value - zero).
 struct Bytes8 {
   static constexpr bool scalar = true;
   static constexpr std::size_t bytes = 1;
   static constexpr float factor = -32768, zero = 0;
 };
-/// The same under Filter::linear_8_bit, whose samples are whole.
+/// The same under Filter::linear_8_bit, whose samples are integers.
 struct RoundedBytes8 {
   static constexpr bool scalar = true;
   static constexpr float factor = 1, zero = 0;
@@ -118,7 +118,7 @@ struct Colours8 {
   static constexpr float factor = -32768, zero = 0;
 };
 
-/// What stays the same for all samples of a frame, in vectors.
+/// Constants of a frame, as vectors.
 struct Constants {
   template <typename Source>
   Constants(const Scene& scene, Source)
@@ -140,7 +140,7 @@ struct Constants {
     }
     blocks_x = hn::Set(d, counts[0]);
     blocks_y = hn::Set(d, counts[1]);
-    // Sums of the lattice's block indices may wrap around; their difference to this is small and right again.
+    // Sums of the lattice's block indices may wrap around; their difference to this is small and correct again.
     const auto wide = [](int v) { return std::uint32_t(v); };
     first_block = hn::Set(
         d,
@@ -148,7 +148,7 @@ struct Constants {
     neutral = hn::Set(f, neutral_value(scene.op));
     is_limited = scene.op == Operator::over && scene.opacity_limit < 1;
     opacity_limit = hn::Set(f, scene.opacity_limit);
-    // What a first hit shows is opaque.
+    // A first hit is opaque.
     termination = hn::Set(f, scene.op == Operator::over        ? scene.termination
                              : scene.op == Operator::first_hit ? 0.5F
                                                                : -std::numeric_limits<float>::infinity());
@@ -203,10 +203,10 @@ struct Constants {
   }
 
   const std::byte* const* blocks;
-  const std::int32_t* distances;  // a byte each; four are gathered
-  const float* bounds;            // of blocks, under a maximum; may be null
+  const std::int32_t* distances;  // a byte each; gathered four at a time
+  const float* bounds;            // upper bounds of blocks, under a maximum; may be null
   bool skips, nearest, with_border;
-  bool is_limited = false;  // in opacity
+  bool is_limited = false;  // opacity_limit applies
   Operator op;
   std::array<Floats, 3> top, border_weight;
   std::array<Floats, 3> rounding;  // in blocks
@@ -217,43 +217,42 @@ struct Constants {
   Floats table_low, table_scale, table_last;
   Ints neutral_entry;
 
-  std::size_t pair_row = 0;  // entries from one of the back to the next
+  std::size_t pair_row = 0;  // entries per row of the pre-integration table
   Ints last_corner;
   Floats samples_on;
   std::array<Floats, 3> cells_away, held_low, held_high;
 
-  std::array<Floats, 4> map_columns;  // of the map of colours; components side by side
-  Floats scaled_by_alpha;             // of colours and pairs: the components that alpha multiplies
+  std::array<Floats, 4> map_columns;  // of the linear map of colours; components side by side
+  Floats scaled_by_alpha;             // of colours and pairs: 1 for components that alpha multiplies, else 0
   Floats alpha_above;
 
-  const float* fog_rows = nullptr;  // null: the air is clear
+  const float* fog_rows = nullptr;  // null: no fog
   std::array<Floats, 3> fog_gradient;
   Floats fog_offset, fog_last;
 };
 
-/// A packet's rays, and the next sample of each (a whole number).
+/// A packet's rays, and the index of the next sample of each (an integer).
 struct Packet {
   std::array<Floats, 3> start, step;
   Floats k, last;
   std::array<Floats, 3> steps_per_block,
-      direction;  // for skips: a little too few steps, and the sign of `step`
+      direction;  // for skipping: steps per block, slightly reduced, and the sign of `step`
 
   bool done() const { return hn::AllTrue(FloatTag(), hn::Gt(k, last)); }
 };
 
-/// Packets side by side that skip together, so that one's chain of instructions fills the gaps of the
-/// other's.
+/// Adjacent packets that skip together, so that their independent instruction chains overlap.
 constexpr std::size_t group = 2;
 static_assert(tile_width % (4 * group) == 0);
 using Group = std::array<Packet, group>;
 
-/// Sample positions, each product and sum rounded by itself as everywhere.
+/// Sample positions. As everywhere, each product and each sum is rounded separately.
 struct Position {
   std::array<Floats, 3> free, clamped;
 };
 
 HWY_INLINE Position position_of(const Packet& rays, const Constants& constants) {
-  // Rays at their end stay on the last sample, where it is safe to read.
+  // Finished rays stay at the last sample, where it is safe to read.
   const Floats k = hn::Min(rays.k, rays.last);
   Position p;
 #pragma GCC unroll 3
@@ -270,8 +269,8 @@ HWY_INLINE Ints block_index(Ints x, Ints y, Ints z, const Constants& constants) 
   return hn::Add(hn::Mul(row, constants.blocks_x), hn::Sub(x, constants.first_block));
 }
 
-/// Lets the rays that are in an empty block skip, and with `bounded` those in a block that can show no more
-/// than `shown`; false when there were none.
+/// Advances the rays that are in an empty block and, with `bounded`, those in a block that can show no more
+/// than `shown`. Returns false if there were none.
 template <bool bounded>
 HWY_INLINE bool skip(Packet& rays, const Constants& constants, Floats shown) {
   const FloatTag f;
@@ -284,7 +283,7 @@ HWY_INLINE bool skip(Packet& rays, const Constants& constants, Floats shown) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Floats blocks = hn::Mul(p.clamped[axis], hn::Set(f, 1.0F / BrickStore::block_cells));
     block[axis] = truncated(blocks);
-    // Steps to the face ahead, less one block; rounding must not carry us past it.
+    // Steps to the face ahead, less one block; rounding must not lead past it.
     const Floats in_block = hn::Sub(hn::Sub(blocks, hn::ConvertTo(f, block[axis])), half);
     const Floats room = hn::Sub(hn::NegMulSub(rays.direction[axis], in_block, half), constants.rounding[axis]);
     steps_to_face[axis] = hn::Mul(room, rays.steps_per_block[axis]);
@@ -296,7 +295,7 @@ HWY_INLINE bool skip(Packet& rays, const Constants& constants, Floats shown) {
     distance = hn::Max(distance, hn::IfThenElseZero(exhausted, hn::Set(f, 1.0F)));
   }
   const auto empty = hn::And(hn::Gt(distance, hn::Zero(f)), hn::Le(rays.k, rays.last));
-  // All blocks fewer than `distance` steps away are empty.
+  // All blocks fewer than `distance` blocks away are empty.
   Floats steps = hn::Set(f, 1e9F);
 #pragma GCC unroll 3
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -306,7 +305,7 @@ HWY_INLINE bool skip(Packet& rays, const Constants& constants, Floats shown) {
   return !hn::AllFalse(f, empty);
 }
 
-/// Moves every ray out of empty bricks, to its next sample in a block that shows something or past its last
+/// Advances every ray out of empty bricks, to its next sample in a block that shows something or past its last
 /// sample.
 HWY_INLINE void skip_empty(Group& packets, const Constants& constants) {
   for (bool again = true; again;) {
@@ -316,7 +315,7 @@ HWY_INLINE void skip_empty(Group& packets, const Constants& constants) {
   }
 }
 
-/// The same under a maximum whose blocks have bounds; `shown` is what each ray has seen.
+/// The same under a maximum with bounds of blocks; `shown` is the maximum of each ray so far.
 HWY_INLINE void skip_exhausted(Group& packets, const std::array<Floats, group>& shown,
                                const Constants& constants) {
   for (bool again = true; again;) {
@@ -326,9 +325,9 @@ HWY_INLINE void skip_exhausted(Group& packets, const std::array<Floats, group>& 
   }
 }
 
-/// One sample of every ray on its way through the three passes.
+/// One sample of every ray, as passed between the three passes of take_samples().
 struct Located {
-  alignas(64) std::array<std::uint32_t, lanes> block, corner;  // where the cell's texels are
+  alignas(64) std::array<std::uint32_t, lanes> block, corner;  // of the cell's texels
   Ints weights;                                                // along x, for pairs of 16-bit texels
   Floats x, y, z, border_weight;
 };
@@ -364,7 +363,7 @@ HWY_INLINE void locate(const Position& p, const Constants& constants, Located& o
   out.z = fraction[2];
 
   if (constants.with_border) {
-    // Beyond the outermost texel centres the filter mixes in a constant: one axis at a time, so the weights
+    // Beyond the outermost texel centres the filter blends in a constant, one axis at a time, so the weights
     // multiply.
     out.border_weight = one;
 #pragma GCC unroll 3
@@ -375,7 +374,7 @@ HWY_INLINE void locate(const Position& p, const Constants& constants, Located& o
   }
 }
 
-/// Where each ray's cell begins.
+/// The first texel of each ray's cell.
 using Corners = std::array<const std::uint8_t*, lanes>;
 
 template <std::size_t bytes_per_texel>
@@ -396,8 +395,8 @@ constexpr std::array<std::size_t, 4> edge_offsets{0, BrickStore::block_row, Bric
 template <std::size_t q>
 HWY_INLINE Bytes edge_texels(const Corners& corners) {
   const ByteTag d;
-  // Bytes 0, 1 (the corner's row) and 9, 10 (the next row), widened to 16 bits: lower slice first, upper
-  // slice second.
+  // Bytes 0, 1 (the corner's row) and 9, 10 (the next row), widened to 16 bits: lower slice first, then the
+  // upper.
   alignas(16) static constexpr std::uint8_t lower[16] = {0,   128, 1,   128, 9,   128, 10,  128,
                                                          128, 128, 128, 128, 128, 128, 128, 128};
   alignas(16) static constexpr std::uint8_t upper[16] = {128, 128, 128, 128, 128, 128, 128, 128,
@@ -429,7 +428,7 @@ HWY_INLINE Floats edges_of_column(const Corners& corners, const Located& at, con
   return hn::ConvertTo(FloatTag(), pairwise_products(made_signed, hn::Broadcast<q>(at.weights)));
 }
 
-/// The nearest texel alone decides; with a weight of 0 a neighbour's NaN would get through.
+/// The nearest filter selects one value: multiplied by a weight of 0, a neighbour's NaN would remain NaN.
 HWY_INLINE Floats mix_or_choose(Floats a, Floats b, Floats s, bool nearest) {
   return nearest ? hn::IfThenElse(hn::Gt(s, hn::Zero(FloatTag())), b, a) : mix(a, b, s);
 }
@@ -461,7 +460,7 @@ HWY_INLINE Floats field_at(const Located& at, const Constants& constants, Source
                        mix_or_choose(edges[2], edges[3], at.y, choose), at.z, choose);
 }
 
-/// For pairs of 16-bit values: (filter_steps - s, s), of fractions of the way from the first to the second.
+/// Weights (filter_steps - s, s) for pairs of 16-bit values, from interpolation fractions.
 HWY_INLINE Ints rounded_weights(Floats fraction) {
   const Ints high = hn::NearestInt(hn::Mul(fraction, hn::Set(FloatTag(), float(filter_steps))));
   return hn::Add(hn::Set(IntTag(), filter_steps), hn::Sub(hn::ShiftLeft<16>(high), high));
@@ -497,7 +496,7 @@ HWY_INLINE Floats field_at(const Located& at, const Constants& constants, Rounde
 
 #include "volume/raycast/vector_colour-inl.h"
 
-/// The packet whose lowest left pixel is (x, y) of the packet.
+/// Loads one value per lane: those of the rays whose lower left one is ray (x, y) of the packet.
 template <typename Values>
 HWY_INLINE Floats values_of_rays(const Values& of_packet, std::size_t x, std::size_t y) {
   alignas(64) float packed[lanes];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that the generic kernel does, on the vector instructions of the machine it runs on.
+// The generic kernel on the vector instructions of the machine.
 //
-// Early termination and empty bricks are looked at once per eight samples, so that addresses never wait for
+// Early termination and empty bricks are tested once per eight samples, so that addresses never wait for
 // colours.
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@
 #define HWY_TARGET_INCLUDE "volume/raycast/vector_kernel.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// After highway.h, which says for which instruction set.
+// After highway.h, which defines the instruction set.
 #include <hwy/contrib/math/math-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -31,7 +31,7 @@ namespace HWY_NAMESPACE {
 #include "volume/raycast/vector_slice_segments-inl.h"
 #include "volume/texel_type.h"
 
-/// `colour` after the row of fog (added colour, weight): components side by side.
+/// Applies a row of the fog table (added colour, weight) to `colour`; components side by side.
 HWY_INLINE Floats fogged(Floats colour, Floats row) {
   const FloatTag f;
   alignas(16) static constexpr float colour_lanes[4] = {1, 1, 1, 0};
@@ -40,7 +40,7 @@ HWY_INLINE Floats fogged(Floats colour, Floats row) {
   return hn::MulAdd(hn::Mul(of_colour, row), hn::Broadcast<3>(colour), hn::Mul(weight, colour));
 }
 
-/// What fog leaves of the colours of the samples at which `rays` stand.
+/// Applies fog to the colours of the current samples of `rays`.
 template <typename Classified>
 HWY_INLINE void lay_in_fog(const Packet& rays, const Constants& constants, const Classified& classified,
                            Colours& out) {
@@ -107,9 +107,9 @@ HWY_INLINE void compose(const std::array<Classified, samples_between_tests>& sam
   }
 }
 
-/// Eight samples of every ray. Three passes: within each, samples do not wait for one another, and the
-/// processor's window holds several of them; one after the other, a sample's chain of some hundred cycles
-/// would be all it sees.
+/// Takes eight samples of every ray, in three passes. Within a pass, samples are independent, so that several
+/// fit into the processor's out-of-order window; sample by sample, the window would contain only one sample's
+/// dependency chain of some hundred cycles.
 template <typename Source>
 HWY_INLINE void take_samples(Packet& rays, const Constants& constants, Source source, Colours& pixels) {
   using Classified = std::conditional_t<Source::scalar, TablePlace, Colours>;
@@ -136,7 +136,7 @@ HWY_INLINE void take_samples(Packet& rays, const Constants& constants, Source so
   compose(seen, constants, pixels);
 }
 
-/// Eight segments of every ray, as take_samples() takes samples.
+/// Takes eight slice segments of every ray, as take_samples() takes samples.
 template <typename Source>
 HWY_INLINE void take_segments(Packet& rays, const Constants& constants, Source source, Colours& pixels) {
   const Floats one = hn::Set(FloatTag(), 1.0F);
@@ -155,8 +155,8 @@ HWY_INLINE void take_segments(Packet& rays, const Constants& constants, Source s
   compose(classified, constants, pixels);
 }
 
-/// Lets the rays end before their last sample. Those that have no other stand still at it, where it is safe to
-/// read, and are done.
+/// Excludes the last sample of every ray. Rays without other samples stay at it, where it is safe to read, and
+/// are done.
 HWY_INLINE void leave_last_sample(Packet& rays) {
   const Floats one = hn::Set(FloatTag(), 1.0F);
   const Floats before = hn::Sub(rays.last, one);
@@ -165,7 +165,7 @@ HWY_INLINE void leave_last_sample(Packet& rays) {
   rays.k = hn::IfThenElse(others, rays.k, hn::Add(rays.k, one));
 }
 
-/// The last sample of every ray that has one, which stands for a layer of the given length.
+/// Takes the last sample of every ray that has one; it represents a layer of the given length.
 template <typename Source>
 HWY_INLINE void take_last_sample(Packet& rays, Floats length, const Constants& constants, Source source,
                                  Colours& pixels) {
@@ -182,7 +182,7 @@ HWY_INLINE void take_last_sample(Packet& rays, Floats length, const Constants& c
   pixels[3] = composed<Operator::over>(pixels[3], colours[3]);
 }
 
-/// The sum of components of what every ray has seen of a maximum, added up as block_bounds() does.
+/// The sum of components of each ray's maximum so far, added up in the same order as by block_bounds().
 HWY_INLINE Floats sum_seen(const std::array<Floats, 4>& pixels) {
   const FloatTag f;
   const hn::Repartition<double, FloatTag> wide;
@@ -197,8 +197,8 @@ HWY_INLINE Floats sum_seen(const std::array<Floats, 4>& pixels) {
   return hn::BitCast(f, hn::InterleaveLower(wide, pair01, pair23));
 }
 
-/// `slice_segments`: what is taken are segments; `whole_rays`: samples cover their rays, so that the last one
-/// stands for a layer of its own length.
+/// `slice_segments`: takes segments instead of samples. `whole_rays`: samples cover their rays, so that the
+/// last one represents a layer of its own length.
 template <bool slice_segments, bool whole_rays, typename Source>
 void walk_packet(const Scene& scene, const RayPacket& packet, Source source, float* rgba,
                  KernelCounts& counts) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layers of another length than a step. A part of vector_kernel.cc and vector_segments-inl.h, included there
-// once per instruction set, behind vector_field-inl.h; wants hwy/contrib/math.
+// Layers of other lengths than a step. A part of vector_kernel.cc and vector_segments-inl.h, included there
+// once per instruction set, after vector_field-inl.h; requires hwy/contrib/math.
 
-/// By what the colours of layers one step long, of opacity `alpha`, are multiplied for layers of such lengths.
+/// The factor from colours of layers one step long, with opacity `alpha`, to those of length `length`.
 HWY_INLINE Floats share_of_layer(Floats length, Floats alpha) {
   const FloatTag f;
   const Floats zero = hn::Zero(f), one = hn::Set(f, 1.0F);
-  // The logarithm wants less than full opacity, which stays what it is.
+  // The logarithm requires less than full opacity; full opacity stays unchanged.
   const Floats passing = hn::Min(alpha, hn::Set(f, 1 - std::numeric_limits<float>::epsilon()));
   const Floats depth = hn::Mul(length, hn::Log1p(f, hn::Neg(passing)));
   const Floats kept = hn::IfThenElse(hn::Lt(alpha, one), hn::Neg(hn::Expm1(f, depth)), one);
@@ -21,7 +21,7 @@ HWY_INLINE void multiply(Floats by, Colours& colours) {
   colours[3] = hn::Mul(colours[3], hn::Broadcast<3>(by));
 }
 
-/// What layers of such lengths show, from what layers one step long do.
+/// Converts colours of layers one step long to layers of length `length`.
 HWY_INLINE void resize_layers(Floats length, Colours& colours) {
   multiply(share_of_layer(length, alphas(colours)), colours);
 }

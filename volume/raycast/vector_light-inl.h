@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light on the samples of vector kernels: a part of vector_segments-inl.h, included there once per instruction
+// Lights the samples of vector kernels: a part of vector_segments-inl.h, included there once per instruction
 // set, among the functions that it calls.
 //
-// The cells one step ahead and one step behind on an axis have the sample's own fractions, so a central
-// difference is that of their texels, interpolated once: for bytes it is exact before any weight. A cell's
-// neighbour may lie in another block, which is looked up lane by lane.
+// The cells one step ahead and one behind on an axis have the same interpolation fractions as the sample, so a
+// central difference is the interpolated difference of their texels; for bytes it is exact before weighting. A
+// neighbouring cell may lie in another block, which is determined lane by lane.
 
-/// Where the cells beside the rays' own lie, on one axis.
+/// The positions of the cells adjacent to the rays' own, on one axis.
 struct Neighbours {
   alignas(64) std::array<std::uint32_t, lanes> block, corner;
 };
 
-/// Of column q alone, whose few pointers stay in registers.
+/// For column q only, so that its few pointers stay in registers.
 template <std::size_t q, std::size_t bytes_per_texel>
 HWY_INLINE Corners corners_of_column(const Neighbours& at, const Constants& constants) {
   Corners corners;
@@ -22,7 +22,7 @@ HWY_INLINE Corners corners_of_column(const Neighbours& at, const Constants& cons
   return corners;
 }
 
-/// Column q's edges in the cells ahead less those in the cells behind.
+/// Column q's edges in the cells ahead, minus those in the cells behind.
 template <std::size_t q, typename Source>
 HWY_INLINE Floats edge_differences(const Neighbours& ahead, const Neighbours& behind, const Located& at,
                                    const Constants& constants, Source source) {
@@ -51,7 +51,7 @@ HWY_INLINE Floats difference_of(const Neighbours& ahead, const Neighbours& behin
   return mix(mix(edges[0], edges[1], at.y), mix(edges[2], edges[3], at.y), at.z);
 }
 
-/// On each axis the field's difference between one cell ahead and one behind, as field_at() gives values.
+/// The difference between the field one cell ahead and one behind on each axis, in the scale of field_at().
 using Slope = std::array<Floats, 3>;
 
 /// The cells around the rays' own.
@@ -60,8 +60,8 @@ struct Surroundings {
   std::array<Neighbours, 3> ahead, behind;
 };
 
-/// False where what is held ends within a cell of some ray of `wanted`. Of other rays, places are moved to
-/// where it is safe to read.
+/// Returns false if some ray of `wanted` is less than a cell from the end of the held cells. Positions of other
+/// rays are moved to where it is safe to read.
 HWY_INLINE bool look_around(const Position& p, Mask wanted, const SegmentConstants& constants,
                             Surroundings& out) {
   const FloatTag f;
@@ -100,7 +100,7 @@ HWY_INLINE bool look_around(const Position& p, Mask wanted, const SegmentConstan
   return true;
 }
 
-/// The field in the cells beside the rays' own.
+/// The field in the cells adjacent to the rays' own.
 template <typename Source>
 HWY_INLINE Floats value_beside(const Neighbours& beside, const Located& at, const Constants& constants,
                                Source source) {
@@ -116,7 +116,7 @@ HWY_INLINE void find_slope(const Surroundings& around, const SegmentConstants& c
 #pragma GCC unroll 3
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if constexpr (std::is_same_v<Source, RoundedBytes8>) {
-      // Each of the two is rounded by itself.
+      // Each of the two values is rounded separately.
       slope[axis] = hn::Sub(value_beside(around.ahead[axis], around.at, constants, source),
                             value_beside(around.behind[axis], around.at, constants, source));
     } else {
@@ -125,8 +125,8 @@ HWY_INLINE void find_slope(const Surroundings& around, const SegmentConstants& c
   }
 }
 
-/// Near the end of what is held, where places beside the rays' are clamped, and where gradients reach farther
-/// or less far than to the next cell.
+/// For positions near the end of the held cells, where neighbouring positions are clamped, and for gradients
+/// that reach farther or less far than to the next cell.
 template <typename Source>
 HWY_NOINLINE void find_clamped_slope(const Position& p, const SegmentConstants& constants, Source source,
                                      Slope& slope) {
@@ -151,18 +151,18 @@ HWY_NOINLINE void find_clamped_slope(const Position& p, const SegmentConstants& 
   }
 }
 
-/// No gradient is so flat, but for what rounding leaves.
+/// Smaller squared gradients are rounding noise.
 constexpr float least_square = 1e-30F;
 
-/// How much of the light points throw back: the cosine between normal and light, and that between normal and
-/// half the way to the eye, raised to the shininess.
+/// How strongly points reflect the light: the cosine between normal and light, and the cosine between normal
+/// and half vector, raised to the shininess.
 struct Brightness {
   Floats diffuse, gleam;
-  Floats lit;      // the light's share: 1, less where it fades, and 0 where there is no slope
-  Floats opacity;  // by the slope; if there is gradient opacity
+  Floats lit;      // weight of the lit colour: 1, less where it fades, 0 without a gradient
+  Floats opacity;  // factor by gradient length; only with gradient opacity
 };
 
-/// By slopes in the units of `metric`.
+/// Gradient opacity for gradient lengths in the units of `metric`.
 HWY_INLINE Floats gradient_opacity_of(Floats slope, const SegmentConstants& constants) {
   const FloatTag f;
   const IntTag d;
@@ -196,7 +196,7 @@ HWY_INLINE void find_cosines(const SegmentPacket& rays, const Slope& slope, cons
   const Floats zero = hn::Zero(f), one = hn::Set(f, 1.0F);
   Floats x = slope[0], y = slope[1], z = slope[2], size = one;
   if constexpr (std::is_same_v<Source, Floats32>) {
-    // Squares of what a float holds need not be floats.
+    // Squares may exceed the range of a float.
     const Floats largest = hn::Max(hn::Abs(x), hn::Max(hn::Abs(y), hn::Abs(z)));
     size = hn::Max(largest, hn::Set(f, std::numeric_limits<float>::min()));
     const Floats unit = hn::Div(one, size);
@@ -211,7 +211,7 @@ HWY_INLINE void find_cosines(const SegmentPacket& rays, const Slope& slope, cons
   const Mask slopes = hn::And(hn::Gt(square, hn::Set(f, least_square)),
                               hn::Lt(square, hn::Set(f, std::numeric_limits<float>::max())));
   const Floats safe = hn::IfThenElse(slopes, square, one);
-  // One step of Newton's takes the estimate to a float's precision.
+  // One Newton step refines the estimate to float precision.
   const Floats estimate = hn::ApproximateReciprocalSqrt(safe);
   const Floats rest = hn::NegMulAdd(hn::Mul(safe, estimate), estimate, one);
   const Floats unit = hn::MulAdd(hn::Mul(hn::Set(f, 0.5F), estimate), rest, estimate);
@@ -240,7 +240,7 @@ HWY_INLINE void find_cosines(const SegmentPacket& rays, const Slope& slope, cons
     find_response(hn::Min(hn::Max(c, hn::Neg(one)), one), constants, out);
   } else {
     out.diffuse = cosine(rays.light);
-    // What is below would only end in powers too small for normal floats.
+    // Smaller cosines would only lead to denormal powers.
     out.gleam = hn::Max(cosine(rays.half), constants.least_cosine);
   }
   out.lit = hn::IfThenElseZero(slopes, one);
@@ -249,8 +249,8 @@ HWY_INLINE void find_cosines(const SegmentPacket& rays, const Slope& slope, cons
   out.lit = hn::IfThenElseZero(slopes, hn::Min(steepness, one));
 }
 
-/// Raises cosines to the shininess: to whole powers by squaring, to others by logarithms. Point by point in the
-/// inner loop, where none waits for another.
+/// Raises cosines to the shininess: to integers by squaring, to other exponents by logarithms. The inner loop
+/// runs over points, which are independent.
 template <std::size_t count>
 HWY_INLINE void raise(const SegmentConstants& constants, std::array<Brightness, count>& points) {
   const FloatTag f;
@@ -299,7 +299,7 @@ HWY_INLINE void light_up(const Brightness& at, const SegmentConstants& constants
   colours[3] = hn::Mul(colours[3], hn::Broadcast<3>(at.opacity));
 }
 
-/// Light on the points p of the rays of `wanted`, which have such colours.
+/// Lights the points p of the rays of `wanted`; `colours` holds their colours.
 template <typename Source>
 HWY_NOINLINE void lay_in_light(const SegmentPacket& rays, const Position& p, Mask wanted,
                                const SegmentConstants& constants, Source source, Colours& colours) {

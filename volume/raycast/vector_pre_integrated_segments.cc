@@ -16,7 +16,7 @@
 #define HWY_TARGET_INCLUDE "volume/raycast/vector_pre_integrated_segments.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// After highway.h, which says for which instruction set.
+// After highway.h, which defines the instruction set.
 #include <hwy/contrib/math/math-inl.h>
 
 HWY_BEFORE_NAMESPACE();

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The walk along a packet's rays, eight segments at a time: their ends, what they show, surfaces that part
-// them, light, and what of it reaches the pixels. A part of vector_segments-inl.h, included there once per
-// instruction set, behind the functions that it calls.
+// Walks along a packet's rays, eight segments at a time: their ends, colours, surfaces that split them, light,
+// and compositing into the pixels. A part of vector_segments-inl.h, included there once per instruction set,
+// after the functions that it calls.
 
-/// The ends of eight segments of every ray, and what they show.
+/// The ends of eight segments of every ray, and their classification.
 template <bool pre_integrated>
 struct SegmentBlock {
   using Classified = std::conditional_t<pre_integrated, SegmentPlace, TablePlace>;
 
-  bool inside = false;        // all are there, and a step long
-  bool in_one_piece = false;  // and, pre-integrated, none leads past an end of the table
+  bool inside = false;        // all segments exist and are one step long
+  bool in_one_piece = false;  // and, pre-integrated, none crosses an end of the table
   std::array<Floats, samples_between_tests + 1> u, values;
   std::array<Classified, samples_between_tests> classified;
 
@@ -74,7 +74,7 @@ HWY_INLINE void classify_block(SegmentPacket& rays, const SegmentConstants& cons
   }
 }
 
-/// Which segments surfaces part in some ray; false if there are none.
+/// Finds the segments that surfaces split in some ray. Returns false if there are none.
 template <bool pre_integrated, typename Source>
 HWY_INLINE bool find_parted(const SegmentPacket& rays, const SegmentConstants& constants, Source,
                             const SegmentBlock<pre_integrated>& block,
@@ -96,7 +96,7 @@ HWY_INLINE bool find_parted(const SegmentPacket& rays, const SegmentConstants& c
   return any_parted;
 }
 
-/// Light on what segments show, in passes within which none waits for another.
+/// Lights the colours of segments, in passes within which segments are independent.
 template <bool pre_integrated, typename Source>
 HWY_INLINE void light_block(const SegmentPacket& rays, const SegmentConstants& constants, Source source,
                             const SegmentBlock<pre_integrated>& block,
@@ -130,8 +130,7 @@ HWY_INLINE void light_block(const SegmentPacket& rays, const SegmentConstants& c
     if (shown[i]) light_up(bright[i], constants, colours[i]);
 }
 
-/// Eight segments of every ray. Between samples that no surface parts, and on whole segments, colours are
-/// composed as those of samples are.
+/// Takes eight segments of every ray. Whole segments that no surface splits are composited like samples.
 template <bool pre_integrated, bool lit, typename Source>
 HWY_INLINE void take_segments(SegmentPacket& rays, const SegmentConstants& constants, Source source,
                               Colours& pixels) {
@@ -189,7 +188,7 @@ HWY_INLINE void take_segments(SegmentPacket& rays, const SegmentConstants& const
   rays.k = hn::Add(rays.k, hn::Set(f, float(samples_between_tests)));
 }
 
-/// The packet whose lowest left pixel is (x, y) of the packet.
+/// The rays whose lower left one is ray (x, y) of the packet.
 HWY_INLINE SegmentPacket segment_packet_of(const RayPacket& packet, std::size_t x, std::size_t y,
                                            const SegmentConstants& constants) {
   const FloatTag f;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that the generic segments do, on the vector instructions of the machine it runs on, eight segments of
-// every ray at a time, as vector_kernel.cc takes samples. What happens seldom (surfaces, the ends of rays) is
-// done segment by segment. A part of vector_segments.cc and vector_pre_integrated_segments.cc, included there
-// once per instruction set.
+// The generic segment kernel on the vector instructions of the machine, eight segments of every ray at a time,
+// as vector_kernel.cc takes samples. Rare cases (surfaces, the ends of rays) are handled segment by segment. A
+// part of vector_segments.cc and vector_pre_integrated_segments.cc, included there once per instruction set.
 
 #include "volume/raycast/vector_field-inl.h"
 #include "volume/raycast/vector_layer-inl.h"
@@ -10,7 +9,7 @@
 
 using Mask = hn::Mask<FloatTag>;
 
-/// What stays the same for all segments of a frame, in vectors.
+/// Constants of a frame for segments, as vectors.
 struct SegmentConstants : Constants {
   template <typename Source>
   SegmentConstants(const Scene& scene, Source source) : Constants(scene, source) {
@@ -33,7 +32,7 @@ struct SegmentConstants : Constants {
       reach[axis] = prepared_light->reach[axis];
       has_inner = has_inner && reach[axis] == 1;
     }
-    // Of the size of one, so that squares of slopes lie far from the ends of what a float holds.
+    // Normalised to magnitudes near one, so that squared slopes stay far from the limits of a float.
     const std::array<float, 9>& of_light = prepared_light->metric;
     const float unit = 1 / std::sqrt(std::max({of_light[0], of_light[4], of_light[8]}));
     for (std::size_t i = 0; i < 9; ++i) metric[i] = hn::Set(f, of_light[i] * unit * unit);
@@ -87,7 +86,7 @@ struct SegmentConstants : Constants {
     gleams = false;
   }
 
-  /// Where blocks and their neighbours are held.
+  /// Sets the range of cells whose neighbours are held, and the index distances between neighbouring blocks.
   void set_neighbourhood(const Scene& scene) {
     const FloatTag f;
     const auto& counts = scene.store->block_counts();
@@ -105,39 +104,39 @@ struct SegmentConstants : Constants {
   std::array<Floats, 3> held_low, held_high;
   bool values_beyond = false;
   std::size_t levels = 0;
-  std::array<Floats, max_surfaces> level;    // as field_at() gives values
+  std::array<Floats, max_surfaces> level;    // in the scale of field_at()
   std::array<Floats, max_surfaces> surface;  // components side by side
 
   const PreparedLight* prepared_light = nullptr;
   std::array<Floats, 9> metric;
-  float normal_of_slope = 1;  // what directions over gradients are scaled with to suit `metric` and slopes
+  float normal_of_slope = 1;  // scale of `light` and `half` that matches `metric` and the sign of slopes
   Floats ambient, diffuse, specular;  // components side by side
   Floats shininess, least_cosine;
   std::optional<unsigned> whole_shininess;
   bool gleams = false, two_sided = false;
-  Floats even;  // components side by side: what points without a slope keep
+  Floats even;  // factor for points without a gradient; components side by side
   bool is_limited = false;
   Floats brightest;                  // times opacity; components side by side
-  const float* responses = nullptr;  // pairs of diffuse and specular; null: light is Blinn's and Phong's
+  const float* responses = nullptr;  // pairs of diffuse and specular; null: Blinn-Phong
   Floats half_last_response;
   Ints last_response;       // the last but one entry
-  bool is_guarded = false;  // normals are shorter than 1
+  bool is_guarded = false;  // normals may be shorter than 1
   NormalGuard::Form guard_form{};
   Floats guard_in_slopes;                   // in the units of `metric`
   bool fades = false;                       // where slopes are less than the light's full slope
-  Floats share_of_slope;                    // what a slope in the units of `metric` is multiplied with
+  Floats share_of_slope;                    // factor for slopes in the units of `metric`
   const float* gradient_factors = nullptr;  // null: opacity does not depend on slopes
   Ints last_gradient_factor;                // the last but one
   Floats gradient_factors_a_slope;          // in the units of `metric`
   Floats first_gradient_factor, end_of_gradient_factors;
 
-  std::array<Floats, 3> inner_low, inner_high;  // one cell away from the ends of what is held
-  bool has_inner = true;                        // and gradients reach the next cell
+  std::array<Floats, 3> inner_low, inner_high;  // one cell away from the ends of the held cells
+  bool has_inner = true;                        // they exist, and gradients reach exactly to the next cell
   std::array<float, 3> reach{1, 1, 1};
-  std::array<Ints, 3> blocks_along;  // blocks from one to the next on each axis
+  std::array<Ints, 3> blocks_along;  // index distance of neighbouring blocks on each axis
 };
 
-/// A packet that walks segments. Its first sample is `value`, where that is known.
+/// A packet for segments. If `known`, `value` is the field at the front of the next segment.
 struct SegmentPacket : Packet {
   Floats begin, end;
   std::array<Floats, 3> light, half;
@@ -146,9 +145,9 @@ struct SegmentPacket : Packet {
 };
 using SegmentGroup = std::array<SegmentPacket, group>;
 
-/// Where segment k begins, in steps.
+/// The position where segment k begins, in steps.
 HWY_INLINE Floats on_ray(const SegmentPacket& rays, Floats k) {
-  // Rays at their end stay behind their last segment, where it is safe to read.
+  // Finished rays stay behind their last segment, where it is safe to read.
   const Floats counted = hn::Min(k, hn::Add(rays.last, hn::Set(FloatTag(), 1.0F)));
   return hn::Min(hn::Max(counted, rays.begin), rays.end);
 }
@@ -175,7 +174,7 @@ HWY_INLINE Floats value_at(const Position& p, const SegmentConstants& constants,
   return value_of(at, constants, source);
 }
 
-/// Lets the rays skip over the segments that lie in empty bricks from end to end; false when there were none.
+/// Skips the segments that lie completely in empty bricks. Returns false if there were none.
 HWY_INLINE bool skip_empty_runs_of_segments(SegmentPacket& rays, const SegmentConstants& constants) {
   const FloatTag f;
   const IntTag d;
@@ -205,7 +204,7 @@ HWY_INLINE bool skip_empty_runs_of_segments(SegmentPacket& rays, const SegmentCo
   return !hn::AllFalse(f, empty);
 }
 
-/// Of values as field_at() gives them, less that of a surface.
+/// For differences between values in the scale of field_at() and that of a surface.
 template <typename Source>
 HWY_INLINE Mask is_above(Floats difference) {
   const Floats zero = hn::Zero(FloatTag());
@@ -220,7 +219,7 @@ HWY_INLINE Mask passes(Floats front, Floats back, Floats level) {
   return other;
 }
 
-/// Colours of the rays of a mask (1 or 0 in each lane); nothing for the others.
+/// Clears the colours of rays outside a mask (1 or 0 in each lane).
 HWY_INLINE void keep(Floats shown, Colours& colours) {
   const FloatTag f;
   const Floats zero = hn::Zero(f);
@@ -239,7 +238,7 @@ HWY_INLINE bool show(const Colours& colours) {
   return !hn::AllFalse(f, hn::Or(either(0, 1), either(2, 3)));
 }
 
-/// What pieces of such lengths show of layers that are one step long.
+/// Converts colours of layers one step long to layers of `length` steps, at most 1.
 HWY_INLINE void shorten(Floats length, Colours& colours) {
   const Floats one = hn::Set(FloatTag(), 1.0F);
   multiply(hn::IfThenElse(hn::Lt(length, one), share_of_layer(length, alphas(colours)), one), colours);
@@ -250,7 +249,7 @@ HWY_INLINE void compose_over(const Colours& colours, Colours& pixels) {
   for (std::size_t q = 0; q < 4; ++q) pixels[q] = composed<Operator::over>(pixels[q], colours[q]);
 }
 
-/// A sample with all of its step.
+/// Composites a sample that represents a whole step.
 HWY_INLINE void compose_sample(const Colours& colours, const Constants& constants, Colours& pixels) {
   if (!constants.is_limited) return compose_over(colours, pixels);
 #pragma GCC unroll 4
@@ -285,8 +284,8 @@ struct Segment {
   }
 };
 
-/// SurfaceSearch for the rays of `sought`, behind `front`, where the field is `at_front`. Takes from `sought`
-/// those that meet what is no number.
+/// SurfaceSearch for the rays of `sought`, behind `front`, where the field is `at_front`. Clears the lanes of
+/// `sought` whose field value is NaN.
 template <typename Source>
 HWY_INLINE Floats find_surface(const Segment& segment, Floats front, Floats at_front, Floats level,
                                const SegmentConstants& constants, Source source, Mask& sought) {
@@ -329,14 +328,14 @@ HWY_INLINE Floats find_surface(const Segment& segment, Floats front, Floats at_f
   return hn::Mul(half, hn::Add(a, b));
 }
 
-/// The way between two values, in places of the table.
+/// A segment between two values, in positions in the table.
 struct PlacedEnds {
-  Floats from, to;     // beyond the table too
-  Floats first, last;  // kept within it
+  Floats from, to;     // may lie beyond the table
+  Floats first, last;  // clamped to the table
 
   PlacedEnds(Floats front, Floats back, const Constants& constants) {
     const FloatTag f;
-    // So that differences of places are numbers.
+    // Keeps differences of positions finite.
     const Floats far = hn::Set(f, 1e18F);
     const auto place = [&](Floats value) HWY_ATTR {
       const Floats free = hn::Mul(hn::Sub(value, constants.table_low), constants.table_scale);
@@ -350,16 +349,16 @@ struct PlacedEnds {
     last = kept(to);
   }
 
-  /// Whether it leads past an end of the table.
+  /// Whether the segment crosses an end of the table.
   Mask part() const {
     const Floats beyond = hn::Max(hn::Abs(hn::Sub(from, first)), hn::Abs(hn::Sub(to, last)));
     return hn::And(hn::Ne(first, last), hn::Gt(beyond, hn::Set(FloatTag(), table_end_slack)));
   }
 };
 
-/// What so many steps show between two places in the table; nothing in the rays that are absent. A part of a
-/// step is more even than the whole, of whose light what is in front takes from what is behind: to second order
-/// its colour is that of the segment and of its mirror image.
+/// Colour of `length` steps between two positions in the table; none for `absent` rays. A part of a step is
+/// more homogeneous than the whole, where the front attenuates the light of the back: to second order, its
+/// colour is a mean of the segment's and of its mirror image's.
 HWY_INLINE void show_stretch(Floats front, Floats back, Floats length, Mask absent, const Constants& constants,
                              Colours& out) {
   const FloatTag f;
@@ -383,8 +382,8 @@ HWY_INLINE void show_stretch(Floats front, Floats back, Floats length, Mask abse
   shorten(length, out);
 }
 
-/// What so many steps show on which the field changes evenly between two values. Beyond the ends of the table
-/// the medium is that of its ends, so there the way is parted.
+/// Colour of `length` steps on which the field varies linearly between two values. Beyond either end of the
+/// table, the entry at that end applies, so the segment is split there.
 template <typename Source>
 HWY_NOINLINE void show_between(Floats front, Floats back, Floats length, Mask absent,
                                const SegmentConstants& constants, Source, Colours& out) {
@@ -411,7 +410,7 @@ HWY_NOINLINE void show_between(Floats front, Floats back, Floats length, Mask ab
   compose_over(part, out);
 }
 
-/// A piece of a segment, pre-integrated, in the rays of `shown`.
+/// Composites a pre-integrated piece of a segment in the rays of `shown`.
 template <typename Source>
 HWY_INLINE void compose_piece(const SegmentPacket& rays, const Segment& segment, Floats begin, Floats end,
                               Floats at_begin, Floats at_end, Mask shown, bool lit,
@@ -426,8 +425,9 @@ HWY_INLINE void compose_piece(const SegmentPacket& rays, const Segment& segment,
   compose_over(colours, pixels);
 }
 
-/// The surfaces in a segment of the rays of `present`, and what lies between them: with `pre_integrated` of the
-/// segment, otherwise of the layer, one step long, that the sample at its front stands for.
+/// Composites the surfaces in a segment of the rays of `present`, and what lies between them: parts of the
+/// segment if `pre_integrated`, otherwise parts of the layer, one step long, that the sample at its front
+/// represents.
 template <bool pre_integrated, typename Source>
 HWY_NOINLINE void compose_surfaces(const SegmentPacket& rays, const Segment& segment, const Mask& present,
                                    bool lit, const SegmentConstants& constants, Source source,
@@ -473,7 +473,7 @@ HWY_NOINLINE void compose_surfaces(const SegmentPacket& rays, const Segment& seg
   }
 }
 
-/// A whole segment's place in the pre-integration table, whose entries are premultiplied.
+/// A whole segment's position in a pre-integration table with premultiplied entries.
 struct SegmentPlace : SegmentIndex {};
 
 template <std::size_t q>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments whose samples are classified, and the way to those that are pre-integrated: two files, because each
-// takes long to compile.
+// Segments whose samples are classified; forwards pre-integrated ones to the other file. Two files, because
+// each takes long to compile.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +17,7 @@
 #define HWY_TARGET_INCLUDE "volume/raycast/vector_segments.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// After highway.h, which says for which instruction set.
+// After highway.h, which defines the instruction set.
 #include <hwy/contrib/math/math-inl.h>
 
 HWY_BEFORE_NAMESPACE();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments and pre-integration tables in the vector kernels: a part of vector_kernel.cc and
+// Slice segments and pre-integration tables in the vector kernels: a part of vector_kernel.cc and
 // vector_segments-inl.h, included there once per instruction set, among the functions that they call.
 
-/// The backs of the segments whose fronts are the rays' samples.
+/// The back positions of the segments whose fronts are the rays' current samples.
 HWY_INLINE Position behind(const Packet& rays, const Constants& constants) {
   const Floats k = hn::Add(hn::Min(rays.k, rays.last), constants.samples_on);
   Position p;
@@ -15,22 +15,22 @@ HWY_INLINE Position behind(const Packet& rays, const Constants& constants) {
   return p;
 }
 
-/// A segment's place in the pre-integration table.
+/// A segment's position in the pre-integration table.
 struct SegmentIndex {
   alignas(64) std::array<std::uint32_t, lanes> entry;  // of the lower corner, as an index of floats
-  // Fractions of the way to the corners beside and above.
+  // Fractions of the distance to the next corner in the row, and to the next row.
   Floats across;
   alignas(64) std::array<float, lanes> up;
 };
 
-/// Where a value stands on either axis of the pre-integration table: an entry, and the fraction of the way to
-/// the next.
+/// Position of a value on either axis of the pre-integration table: an entry, and the fraction of the distance
+/// to the next.
 struct AxisPlace {
   Ints entry;
   Floats between;
 };
 
-/// Of a place from 0 to the last.
+/// Splits a position from 0 to the last entry into entry and fraction.
 HWY_INLINE AxisPlace between_entries(Floats place, const Constants& constants) {
   const Ints entry = hn::Min(truncated(place), constants.last_corner);
   return {entry, hn::Sub(place, hn::ConvertTo(FloatTag(), entry))};
@@ -38,7 +38,7 @@ HWY_INLINE AxisPlace between_entries(Floats place, const Constants& constants) {
 
 HWY_INLINE AxisPlace place_on_axis(Floats value, const Constants& constants) {
   const Floats place = hn::Mul(hn::Sub(value, constants.table_low), constants.table_scale);
-  const Floats kept = hn::Min(hn::Max(place, hn::Zero(FloatTag())), constants.table_last);  // 0: no number
+  const Floats kept = hn::Min(hn::Max(place, hn::Zero(FloatTag())), constants.table_last);  // 0 for NaN
   return between_entries(kept, constants);
 }
 
@@ -53,8 +53,8 @@ HWY_INLINE void set_pair(const AxisPlace& front, const AxisPlace& back, Ints cor
   hn::Store(hn::BitCast(u, hn::ShiftLeft<2>(corner)), u, out.entry.data());
 }
 
-/// Where two values stand in the pre-integration table; `absent` ones leave the composite as it is, and so do
-/// those that are no number.
+/// Finds the position of two values in the pre-integration table. `absent` values and NaN leave the composite
+/// unchanged.
 template <typename Source>
 HWY_INLINE void look_up_segment(Floats front, Floats back, hn::Mask<FloatTag> absent,
                                 const Constants& constants, Source, SegmentIndex& out) {
@@ -79,7 +79,7 @@ HWY_INLINE Floats interpolated_segment(const SegmentIndex& at, const Constants& 
   const std::size_t above = 4 * constants.pair_row;
   const Floats across = hn::Broadcast<q>(at.across);
   if constexpr (rows == 2) {
-    // Entries lie beside each other: one load takes both corners of a ray.
+    // Adjacent entries: one load reads both corners of a ray.
     const auto upwards = [&](std::size_t ray) HWY_ATTR {
       const float* const corner = constants.entries + at.entry[ray];
       return mix(hn::LoadU(f, corner), hn::LoadU(f, corner + above), hn::Set(f, at.up[ray]));

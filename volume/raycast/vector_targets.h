@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of Highway's targets have a vector kernel. To be asked after <hwy/highway.h>, once for each target.
+// Selects the Highway targets that have a vector kernel. Evaluate after <hwy/highway.h>, once per target.
 #pragma once
 
-/// x86 alone: the kernels sum neighbouring products by a multiply-add, whose order Highway leaves open
-/// elsewhere. From SSE4 on; Highway numbers its targets from the newest.
+/// x86 only, because the kernels sum neighbouring products by a multiply-add whose order Highway leaves
+/// undefined on other architectures. From SSE4 on; Highway numbers its targets from the newest.
 #define UNDERSTUDY_VECTOR_KERNEL (HWY_ARCH_X86 && HWY_TARGET <= HWY_SSE4)

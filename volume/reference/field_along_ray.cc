@@ -10,7 +10,7 @@
 namespace understudy::volume {
 namespace {
 
-/// The one root of a monotone cubic minus `value` in [a, b], to the last bit that bisection can tell. Newton's
+/// The root of a monotone cubic minus `value` in [a, b], to the last bit that bisection can resolve. Newton
 /// steps are taken where they stay inside.
 double root_between(const Cubic& cubic, double value, double a, double b) {
   const bool rising = cubic(b) > cubic(a);
@@ -31,14 +31,14 @@ double root_between(const Cubic& cubic, double value, double a, double b) {
 }  // namespace
 
 Cubic cubic_through(const std::array<double, 4>& v) {
-  // Newton's divided differences, multiplied out.
+  // Newton's divided differences, expanded.
   return {{v[0], (-11 * v[0] + 18 * v[1] - 9 * v[2] + 2 * v[3]) / 2,
            9 * (2 * v[0] - 5 * v[1] + 4 * v[2] - v[3]) / 2, 9 * (-v[0] + 3 * v[1] - 3 * v[2] + v[3]) / 2}};
 }
 
 std::vector<double> monotone_parts(const Cubic& cubic) {
   std::vector<double> parts{0};
-  // Of 3 c3 u^2 + 2 c2 u + c1, in the form that loses no digits.
+  // Roots of 3 c3 u^2 + 2 c2 u + c1, in the form without cancellation.
   const double a = 3 * cubic.c[3], half_b = cubic.c[2], c = cubic.c[1];
   const double discriminant = half_b * half_b - a * c;
   if (discriminant > 0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A voxel field along one ray, exactly: within a cell of eight texels the linear filter makes a cubic of it.
+// A voxel field along one ray, exactly: in a cell between eight texels, the linear filter yields a cubic.
 #pragma once
 
 #include <array>
@@ -17,25 +17,25 @@ struct Cubic {
   double operator()(double u) const { return c[0] + u * (c[1] + u * (c[2] + u * c[3])); }
 };
 
-/// One cell of the ray.
+/// The part of a ray in one cell.
 struct Stretch {
   double length = 0;             ///< in the unit of the whole ray's length
   std::array<Cubic, 4> value{};  ///< a scalar field uses the first
 };
 
-/// The stretches of the straight way between two points of texture space, which is `length` long, in order.
-/// Cells of which the field is NaN are left out. `size` is the texture's, in texels.
+/// The stretches of the straight path between two points of texture space, which is `length` long, in order.
+/// Cells in which the field is NaN are skipped. `size` is the texture's, in texels.
 std::vector<Stretch> field_along_ray(const Field& field, const std::array<int, 3>& size, const Vec3& from,
                                      const Vec3& to, double length);
 
 /// The cubic through values at u = 0, 1/3, 2/3, 1.
 Cubic cubic_through(const std::array<double, 4>& values);
 
-/// Where `cubic` is `value` for 0 < u < 1 and crosses it, ascending; where it only touches it is found to the
-/// square root of the machine precision.
+/// Positions 0 < u < 1 where `cubic` crosses `value`, ascending. Where it only touches `value`, they are
+/// accurate to the square root of the machine precision.
 std::vector<double> crossings(const Cubic& cubic, double value);
 
-/// 0 and 1 and, between them, where the cubic turns: it is monotone in between.
+/// 0, 1 and the extrema between them: the cubic is monotone from each to the next.
 std::vector<double> monotone_parts(const Cubic& cubic);
 
 }  // namespace understudy::volume

@@ -41,7 +41,7 @@ std::array<double, 4> illuminated(const Field& field, const VolumeDescription& v
   for (std::size_t axis = 0; axis < 3; ++axis) gradient[axis] *= volume.size[axis];
   const Matrix4 space = linear(light.space);
   const Matrix4 back = inverse(space).value();
-  // The gradient's image is that under the inverse, transposed.
+  // Gradients transform by the transposed inverse.
   Vec3 normal{};
   for (std::size_t row = 0; row < 3; ++row)
     for (std::size_t k = 0; k < 3; ++k) normal[row] -= back[4 * k + row] * gradient[k];
@@ -80,7 +80,7 @@ std::array<double, 4> illuminated(const Field& field, const VolumeDescription& v
              double(light.specular[k]) * gleam * colour[3];
   if (std::isfinite(light.brightest))
     for (std::size_t k = 0; k < 3; ++k) lit[k] = std::min(lit[k], double(light.brightest) * colour[3]);
-  // As long as `slope` is less than light.full_slope.
+  // Fades while `slope` is less than light.full_slope.
   const double share = slope < double(light.full_slope) ? slope / double(light.full_slope) : 1;
   for (std::size_t k = 0; k < 3; ++k) lit[k] = even[k] + share * (lit[k] - even[k]);
   return faded(lit);

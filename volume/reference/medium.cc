@@ -89,7 +89,7 @@ double Medium::noise(std::size_t segment) const {
   const double low = control_points_[below], high = control_points_[above];
   double greatest = std::max(rate(segment, low).extinction, rate(segment, high).extinction);
   if (distance_ > 0) {
-    // The last bit of an opacity near 1 is many of its transparency, whose logarithm the extinction is.
+    // One ulp of an opacity near 1 is many of its transparency, whose logarithm gives the extinction.
     const double opacity = std::max(entry_at(segment, low)[3], entry_at(segment, high)[3]);
     greatest = std::max(greatest, opacity / (1 - opacity) / distance_);
   }

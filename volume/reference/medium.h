@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a value of the field does to light: the right-hand side of the volume rendering integral
+// The optical properties of a field value: the right-hand side of the volume rendering integral
 //
 //   dT/dt = -extinction T,   dC/dt = source T,   T(0) = 1, C(0) = 0
 //
@@ -20,18 +20,18 @@ struct Rate {
   double extinction = 0;
 };
 
-/// Rates as functions of the field's value, smooth between neighbouring control points and constant outside of
-/// them.
+/// Rates as functions of the field's value: smooth between neighbouring control points, constant outside.
 class Medium {
  public:
-  /// Source and extinction themselves are linear between `entries`, which lie evenly from `low` to `high`.
-  /// Throws std::invalid_argument when there is none, or one is negative or not finite.
+  /// Source and extinction are linear between `entries`, which are evenly spaced from `low` to `high`. Throws
+  /// std::invalid_argument when there is none, or one is negative or not finite.
   static Medium of_rates(double low, double high, const std::vector<Rate>& entries);
 
-  /// A transfer function as viewers mean it: premultiplied colour and opacity of a sample are linear between
-  /// entries, and a homogeneous layer as thick as the distance between samples shows exactly them. Its
+  /// A transfer function as viewers define it: premultiplied colour and opacity of a sample are linear between
+  /// entries, and a homogeneous layer as thick as the distance between samples shows exactly these. Its
   /// extinction, -log(1 - opacity) / distance, is not linear, and infinite at opacity 1. Throws
-  /// std::invalid_argument when an entry is not finite, an opacity is not in [0, 1], or the distance not > 0.
+  /// std::invalid_argument when an entry is negative or not finite, an opacity is above 1, or the distance is
+  /// not > 0.
   static Medium of_samples(const TransferFunction& function, double distance);
 
   /// Values at which the rates have a kink, ascending.
@@ -42,16 +42,16 @@ class Medium {
   std::size_t segments() const { return control_points_.size() + 1; }
   std::size_t segment_of(double value) const;
   bool empty(std::size_t segment) const { return empty_[segment] != 0; }
-  /// Opacity is 1 all over the segment: no light passes, however short the way.
+  /// Whether opacity is 1 in the whole segment: no light passes, over any distance.
   bool opaque(std::size_t segment) const { return opaque_[segment] != 0; }
-  /// The same of a way on which the field does not change.
+  /// Whether this holds for a path on which the field has the constant value `value`.
   bool opaque_at(std::size_t segment, double value) const;
 
-  /// `value` lies in `segment`.
+  /// `value` must lie in `segment`.
   Rate rate(std::size_t segment, double value) const;
 
-  /// By how much the extinction of a segment's values may be off because values are known to the last bit only:
-  /// much, compared with itself, where a table entry begins to show.
+  /// Rounding error of the extinction in a segment, for values exact to the last bit: relatively large where
+  /// the opacity begins to rise from 0.
   double noise(std::size_t segment) const;
 
   /// Premultiplied colour and opacity of one sample (of_samples); source and extinction (of_rates).
@@ -67,9 +67,9 @@ class Medium {
   std::vector<char> opaque_;
 };
 
-/// The rate at which a medium absorbs and shines of which a layer of thickness `distance` has this
-/// premultiplied colour and opacity. Opacity 1 counts as the next smaller number: the infinite extinction at a
-/// value that is only passed is integrable.
+/// Absorption and emission of a medium of which a layer of thickness `distance` has this premultiplied colour
+/// and opacity. Opacity 1 is replaced by the next smaller number: infinite extinction at a value that the field
+/// only crosses is integrable.
 Rate rate_of_sample(const std::array<double, 4>& colour, double distance);
 
 }  // namespace understudy::volume

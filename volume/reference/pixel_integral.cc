@@ -12,12 +12,12 @@ namespace understudy::volume {
 
 namespace {
 
-/// A stretch of the way from a pixel's point on the near plane (0) to that on the far plane (1).
+/// A part of the path from a pixel's point on the near plane (0) to its point on the far plane (1).
 struct Kept {
   double enter = 0;
   double leave = 1;
 
-  /// Keeps where value + t * slope >= 0.
+  /// Keeps the part where value + t * slope >= 0.
   void keep(double value, double slope) {
     if (slope > 0) enter = std::max(enter, -value / slope);
     if (slope < 0) leave = std::min(leave, -value / slope);

@@ -62,13 +62,13 @@ const Quadrature& quadrature() {
   return rule;
 }
 
-/// What a piece of the ray adds when light enters it undimmed.
+/// The contribution of a piece of the ray, without attenuation in front of it.
 struct Panel {
   std::array<double, 3> colour{};
   double depth = 0;
 };
 
-/// `rate(u)` over u in [a, b], where u = 1 is `length` long.
+/// Integrates `rate(u)` over u in [a, b], where u = 1 corresponds to `length`.
 template <typename RateAt>
 Panel panel(const RateAt& rate, double a, double b, double length) {
   const Quadrature& rule = quadrature();
@@ -97,7 +97,7 @@ class Integrator {
   explicit Integrator(double tolerance)
       : tolerance_(tolerance), darkest_(tolerance > 1e-12 ? 7 - std::log(tolerance) : 745) {}
 
-  /// Nothing behind can be seen: less than a thousandth of the tolerance, or of what a number can hold.
+  /// Nothing behind is visible: transmittance is below a thousandth of the tolerance, or the smallest double.
   bool dark() const { return sum_.optical_depth > darkest_; }
   RayIntegral sum() const { return sum_; }
 
@@ -105,7 +105,7 @@ class Integrator {
     add({colour, std::numeric_limits<double>::infinity()});
   }
 
-  /// `noise`: by how much extinctions may be off for rounding.
+  /// `noise`: rounding error of extinctions.
   template <typename RateAt>
   void add(const RateAt& rate, double a, double b, double length, double noise) {
     if (dark()) return;
@@ -114,8 +114,8 @@ class Integrator {
   }
 
  private:
-  /// Above this an exponential within one panel is not resolved, and halves and whole may agree by being wrong
-  /// both.
+  /// Above this depth, one panel does not resolve the exponential, and halves and whole may agree although both
+  /// are wrong.
   static constexpr double deepest_panel = 4;
 
   void add(const Panel& piece) {
@@ -129,7 +129,7 @@ class Integrator {
     if (dark()) return;
     const double middle = 0.5 * (a + b);
     if (!(a < middle && middle < b)) {
-      // No number lies between: the extinction is so large that what stands here is a surface.
+      // No double lies between: the extinction is so large that this is a surface.
       const Rate at = rate(a);
       const double seen = -std::expm1(-whole.depth) / at.extinction;
       add({{at.source[0] * seen, at.source[1] * seen, at.source[2] * seen}, whole.depth});
@@ -143,7 +143,7 @@ class Integrator {
     both.depth += second.depth;
     const double light = std::exp(-sum_.optical_depth);
     const double difference = light * greatest_difference(both, whole);
-    // Fog: an opacity of 1e-9 is to be as right as one of 1.
+    // For thin fog: an opacity of 1e-9 must have the same relative accuracy as one of 1.
     const bool same_depth = std::abs(both.depth - whole.depth) <= tolerance_ * both.depth + noise_ * (b - a);
     if (both.depth < deepest_panel && difference <= tolerance_ && same_depth) {
       add(both);
@@ -156,7 +156,7 @@ class Integrator {
 
   double tolerance_;
   double darkest_;
-  double noise_ = 0;  ///< of optical depth over the whole stretch
+  double noise_ = 0;  ///< of the optical depth over a whole stretch
   RayIntegral sum_;
 };
 
@@ -171,7 +171,7 @@ void for_each_smooth_part(const Cubic& value, const Medium& medium, Visit visit)
     const auto first = std::upper_bound(control_points.begin(), control_points.end(), low);
     const auto last = std::lower_bound(first, control_points.end(), high);
     std::vector<double> cuts;
-    // Within this part the cubic is monotone, so it crosses each of these control points once.
+    // The cubic is monotone in this part, so it crosses each of these control points once.
     for (auto point = first; point < last; ++point) {
       double a = turns[i], b = turns[i + 1];
       const bool rising = at_end > at_begin;

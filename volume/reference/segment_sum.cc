@@ -25,7 +25,7 @@ struct Way {
   double first_s = 0;  ///< of the first sample
   double step_s = 0;
   double begin = 0, end = 0;  ///< in u
-  int samples = 0;            ///< most there can be
+  int samples = 0;            ///< upper bound of their number
 
   Vec3 at(double u) const { return add(near, scale(subtract(far, near), first_s + u * step_s)); }
 };
@@ -122,7 +122,7 @@ class Ray {
   }
   bool lights_samples() const { return request_.light && request_.light->on_samples; }
 
-  /// What the sample at u shows, lit; nothing where there is none.
+  /// The colour of the sample at u, lit; zero if there is none.
   Colour sample(double u) const {
     if (medium_ || u < 0 || u >= way_.samples) return {};
     const double v = value(u);
@@ -139,7 +139,7 @@ class Ray {
     return lights_samples() ? lit(u, colour) : colour;
   }
 
-  /// A layer of so many steps, of a medium of which one step shows `colour`.
+  /// Composites a layer of `steps` steps, in a medium of which one step shows `colour`.
   void layer(const Colour& colour, double steps) {
     const double kept = -std::expm1(steps * std::log1p(-colour[3]));
     const double ratio = colour[3] > 0 ? kept / colour[3] : steps;
@@ -163,7 +163,7 @@ class Ray {
     double so_far = begin, at_so_far = front;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
       const Surface& surface = surfaces_[front < back ? i : surfaces_.size() - 1 - i];
-      // A field may be even at the very value: what interpolation rounds away there does not lie below it.
+      // The field may equal the value over an interval: interpolation errors must not count as below it.
       constexpr double rounding = 1e-12;
       const auto above = [&](double v) { return v >= surface.value - rounding * std::abs(surface.value); };
       if (above(front) == above(back)) continue;

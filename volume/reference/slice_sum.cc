@@ -17,7 +17,7 @@ namespace {
 
 using Sample = std::array<double, 4>;
 
-/// A texture as OpenGL sees it, one texel at a time.
+/// A texture with OpenGL's semantics, one texel at a time.
 class Texture {
  public:
   Texture(const VolumeDescription& volume, std::span<const std::byte> texels) : volume_(volume) {
@@ -101,7 +101,7 @@ class Texture {
     return sum;
   }
 
-  /// One byte a texel: axis after axis, as Filter::linear_8_bit says.
+  /// One byte per texel: axis by axis, as specified for Filter::linear_8_bit.
   Sample linear_8_bit(const Vec3& t) const {
     std::array<int, 3> low;
     std::array<int, 3> step;
@@ -141,7 +141,7 @@ class Texture {
   Sample border_{};
 };
 
-/// The fragment that a sample becomes, premultiplied; false when it is discarded.
+/// Computes the fragment of a sample, premultiplied; false when it is discarded.
 bool fragment(const Classification& classification, const Sample& sample, Sample& colour) {
   if (const auto* function = std::get_if<TransferFunction>(&classification)) {
     if (std::isnan(sample[0])) return false;
@@ -167,7 +167,7 @@ bool fragment(const Classification& classification, const Sample& sample, Sample
   return true;
 }
 
-/// The fragment that a segment becomes, premultiplied; false when there is none.
+/// Computes the fragment of a slice segment, premultiplied; false when there is none.
 bool slice_segment_fragment(const PreIntegrationTable& table, double front, double back, Sample& colour) {
   if (std::isnan(front) || std::isnan(back)) return false;
   const double last = table.edge - 1;
@@ -178,7 +178,7 @@ bool slice_segment_fragment(const PreIntegrationTable& table, double front, doub
   colour = {};
   for (int j = 0; j < table.edge; ++j)
     for (int i = 0; i < table.edge; ++i) {
-      // Of every entry its share: a tent of one entry's width.
+      // Bilinear weight of the entry.
       const double share = std::max(0.0, 1 - std::abs(x - i)) * std::max(0.0, 1 - std::abs(y - j));
       if (share == 0) continue;
       const Rgba& entry = table.entries[std::size_t(j) * std::size_t(table.edge) + std::size_t(i)];
@@ -210,7 +210,7 @@ bool nearer(const std::optional<DepthImage>& image, int x, int y, double depth) 
   return image->or_equal ? depth <= there : depth < there;
 }
 
-/// The point s of the way (in depth) from `near` to `far`, both homogeneous.
+/// The point at fraction s of the path (in depth) from `near` to `far`, both homogeneous.
 Vec3 between(const Vec4& near, const Vec4& far, double s) {
   Vec3 t;
   const double w = near[3] + s * (far[3] - near[3]);
@@ -224,14 +224,14 @@ bool cut_away(const RenderRequest& request, const Vec3& t) {
   return false;
 }
 
-/// Calls `sample_at` with every sample of pixel (x, y) on the request's planes, front to back, and with the far
-/// end of its segment.
+/// Calls `sample_at` with every sample of pixel (x, y) on the request's planes, front to back, and with the
+/// second sample of its segment.
 template <typename SampleAt>
 void meet_planes(const RenderRequest& request, const Vec4& near, const Vec4& far, int x, int y,
                  SampleAt sample_at) {
   for (int i = 0; i < request.planes.count; ++i) {
-    // Signed offsets of the pixel's near and far point from the plane: the ray crosses between them or
-    // not at all.
+    // Signed offsets of the pixel's near and far points from the plane: the ray crosses it between them or not
+    // at all.
     const double plane = request.planes.first + i * request.planes.spacing;
     const auto offset = [&](const Vec4& p) {
       return dot(request.planes.normal, {p[0], p[1], p[2]}) - plane * p[3];
@@ -247,7 +247,7 @@ void meet_planes(const RenderRequest& request, const Vec4& near, const Vec4& far
     if (!kept || !nearer(request.depth, x, y, depth)) continue;
     Vec3 behind = t;
     if (request.slice_segment) {
-      // The same pixel's point on the plane of the segment's far end.
+      // The same pixel's point on the plane of the segment's second sample.
       const double further = plane + request.slice_segment->planes * request.planes.spacing;
       const auto to_end = [&](const Vec4& p) {
         return dot(request.planes.normal, {p[0], p[1], p[2]}) - further * p[3];
@@ -265,7 +265,7 @@ void take_steps(const RenderRequest& request, const Vec4& near, const Vec4& far,
                 SampleAt sample_at) {
   const RaySteps& rule = *request.steps;
   const Vec3 start = between(near, far, 0), end = between(near, far, 1);
-  // The ray in world space, continued to both sides as far as the region reaches.
+  // The ray in texture space, extended to both sides as far as the region reaches.
   double enter = -std::numeric_limits<double>::infinity(), leave = -enter;
   for (int k = 0; k < 3; ++k) {
     const double way = end[k] - start[k];
@@ -300,10 +300,10 @@ void take_steps(const RenderRequest& request, const Vec4& near, const Vec4& far,
   }
   for (int i = 0; i < count; ++i) {
     const double s = enter + (first + i) * part;
-    // Of the opaque geometry's depth, which the samples may pass by a few steps but the entry may not.
+    // Depth test against the opaque geometry, which samples may pass by `past_depth` steps, entries not at all.
     const auto visible = [&](double at) {
       if (!request.depth) return true;
-      const double n = near[3] * at / (far[3] + at * (near[3] - far[3]));  // from world space to depth
+      const double n = near[3] * at / (far[3] + at * (near[3] - far[3]));  // from texture space to depth
       return nearer(request.depth, x, y,
                     request.depth_range[0] + n * (request.depth_range[1] - request.depth_range[0]));
     };
@@ -371,7 +371,7 @@ ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const
             case Operator::min:
               pixel[k] = std::min(pixel[k], colour[k]);
               break;
-            case Operator::first_hit:  // above
+            case Operator::first_hit:  // handled above
               break;
           }
       };

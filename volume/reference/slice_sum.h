@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the application's samples mean, literally and in double precision: for every pixel the ordered
-// composition of every plane that its ray meets, or of every step that it takes. Slow, plain and written
-// independently of the ray caster, which is judged by it.
+// Reference images of the application's samples, literally and in double precision: for every pixel, the
+// samples on all planes that its ray crosses, or on all its steps, composited in order. Slow, simple and
+// independent of the ray caster, which is tested against it.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace understudy::volume {
 
 struct RenderRequest;
 
-/// A field over texture space: normalised value in the first component, or RGBA. A NaN contributes nothing.
+/// A field over texture space: normalised value in the first component, or RGBA. NaN contributes nothing.
 using Field = std::function<std::array<double, 4>(const Vec3& t)>;
 
 /// The field of a texture: the texels of `volume.stored`, x fastest, under OpenGL's filter and wrap rules. A
@@ -34,13 +34,13 @@ struct ReferenceImage {
   }
 };
 
-/// What light makes of the premultiplied colour of the sample at t, on a ray that goes along `way`.
+/// Lights the premultiplied colour of the sample at t, on a ray with direction `way`.
 using Shade =
     std::function<std::array<double, 4>(const Vec3& t, const Vec3& way, const std::array<double, 4>& colour)>;
 
-/// Composes all planes (or steps) of `request` over the pixels of `rect` that lie in its window; terminates
-/// early at the request's opacity limit alone. `shade` stands for the request's light; its method and surfaces
-/// are not looked at. Throws std::invalid_argument when the matrix is singular.
+/// Composites all planes (or steps) of `request` over the pixels of `rect` that lie in its window; terminates
+/// early only at the request's opacity limit. `shade` replaces the request's light; its method and surfaces are
+/// ignored. Throws std::invalid_argument when the matrix is singular.
 ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const Rect& rect,
                          const Shade& shade = {});
 

@@ -46,7 +46,7 @@ class OwnCells {
         lattice_(store.lattice()),
         owned_(store.owned_cells()) {}
 
-  /// Whether the stretch whose middle is at `middle`, in texels, lies in a cell of our own; then `cell` is it.
+  /// Whether the stretch with this middle, in texels, lies in a cell of our own; sets `cell` to it.
   bool find(const Vec3& middle, std::array<int, 3>& cell) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const int low = lattice_.origin[axis], last = low + lattice_.cells[axis] - 1;
@@ -82,12 +82,12 @@ class OwnCells {
     return true;
   }
 
-  /// The field at `place`, in texels, by the corners of the cell it is in or next to.
+  /// The field at `place`, in texels, from the corners of the cell that contains or adjoins it.
   void value_at(const Vec3& place, const std::array<int, 3>& cell, const Corners& corners,
                 std::array<double, 4>& value) const {
     const VolumeDescription& volume = store_.description();
     Vec3 fraction{};
-    double inside = 1;  // of the texture's border, the rest
+    double inside = 1;  // weight of the texture; the rest is the weight of its border
     for (std::size_t axis = 0; axis < 3; ++axis) {
       fraction[axis] = std::clamp(place[axis] - cell[axis], 0.0, 1.0);
       if (volume.wrap[axis] != Wrap::border) continue;
@@ -114,7 +114,7 @@ class OwnCells {
   const TexelBox& owned_;
 };
 
-/// Where, as shares of the way, the ray passes from one cell to the next; 0 and 1 among them.
+/// The positions, as fractions of the path, where the ray passes from one cell to the next; includes 0 and 1.
 std::vector<double> faces_on(const Vec3& begin, const Vec3& way) {
   std::vector<double> cuts{0, 1};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -152,7 +152,7 @@ std::vector<Stretch> stored_field_along_ray(const BrickStore& store, const Vec3&
     if (!(width > 0)) continue;
     const auto at = [&](double s) { return add(begin, scale(way, s)); };
     if (!cells.find(at(cuts[i] + width / 2), cell) || !cells.read(cell, corners)) continue;
-    std::array<std::array<double, 4>, 4> values{};  // by place
+    std::array<std::array<double, 4>, 4> values{};  // by position
     for (std::size_t p = 0; p < 4; ++p)
       cells.value_at(at(cuts[i] + width * double(p) / 3), cell, corners, values[p]);
     Stretch& stretch = stretches.emplace_back();

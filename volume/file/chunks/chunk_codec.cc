@@ -40,7 +40,7 @@ void decode_zlib(std::span<const std::byte> packed, std::span<std::byte> chunk) 
   if (ended != Z_STREAM_END || stream.avail_out != 0) fail_chunk();
 }
 
-/// numcodecs writes the decoded size in front, in four bytes.
+/// numcodecs prepends the decoded size, in four bytes.
 void decode_lz4(std::span<const std::byte> packed, std::span<std::byte> chunk) {
   constexpr std::size_t size_bytes = 4;
   if (packed.size() < size_bytes) fail_chunk();

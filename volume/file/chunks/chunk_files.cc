@@ -64,7 +64,7 @@ std::vector<std::byte> ChunkFiles::scalars_of(std::span<const std::int64_t> chun
 }
 
 std::size_t ChunkFiles::memory_to_read(std::size_t shards) const {
-  // One more, as it lies in the file.
+  // Plus one index in the form in which it is stored in the file.
   const std::size_t indices = array_.shards ? shards + 1 : 0;
   const std::size_t unconverted = array_.element.storage == Storage::scalar ? 0 : stored_bytes_;
   return most_packed_bytes() + unconverted + indices * chunks_in_shard() * index_entry_bytes;
@@ -146,7 +146,7 @@ std::vector<std::byte> ChunkFiles::read_bytes(ByteSource& file, Place place) {
   return bytes;
 }
 
-/// What is compressed may be a little longer than what it is of.
+/// Compressed data may be slightly longer than the original.
 std::size_t ChunkFiles::most_packed_bytes() const {
   constexpr std::size_t most_overhead = std::size_t(1) << 16;
   return stored_bytes_ + stored_bytes_ / 2 + most_overhead;

@@ -19,19 +19,19 @@ namespace understudy::volume {
 
 class ChunkFiles {
  public:
-  /// `folder` is that of the array.
+  /// `folder` is the array's folder.
   ChunkFiles(std::string folder, ZarrArray array, ReadableFiles files);
 
   const ZarrArray& array() const { return array_; }
   const std::string& folder() const { return folder_; }
 
-  /// The scalars of a chunk, in the order that array().encoding has and as this processor has them in memory.
-  /// `chunk` counts along each axis of the array. Throws FileError.
+  /// The scalars of a chunk, in the axis order of array().encoding and this processor's representation. `chunk`
+  /// has the chunk's index along each axis of the array. Throws FileError.
   std::vector<std::byte> scalars_of(std::span<const std::int64_t> chunk);
 
-  /// Of one chunk, in bytes.
+  /// Bytes of one decoded chunk.
   std::size_t decoded_bytes() const { return decoded_bytes_; }
-  /// Largest memory in use while chunks of `shards` shards are read, in bytes, beyond the chunks themselves.
+  /// Peak memory while chunks of `shards` shards are read, in bytes, in addition to the chunks themselves.
   std::size_t memory_to_read(std::size_t shards) const;
   std::uint64_t bytes_read() const { return bytes_read_; }
 
@@ -41,13 +41,13 @@ class ChunkFiles {
 
     bool operator==(const Place&) const = default;
   };
-  /// What an index has for a chunk that is not there.
+  /// The index entry of a missing chunk.
   static constexpr Place not_there{~std::uint64_t{}, ~std::uint64_t{}};
-  /// Where the chunks of a shard are.
+  /// The places of a shard's chunks.
   using ShardIndex = std::vector<Place>;
 
   std::string path_of(std::span<const std::int64_t> file) const;
-  /// Nothing where the chunk is not there.
+  /// Empty if the chunk does not exist.
   std::optional<std::vector<std::byte>> packed(std::span<const std::int64_t> chunk);
   std::optional<std::vector<std::byte>> packed_in_shard(std::span<const std::int64_t> chunk);
   const ShardIndex& index_of(const std::vector<std::int64_t>& shard, ByteSource& file);
@@ -61,7 +61,7 @@ class ChunkFiles {
   ReadableFiles files_;
   std::size_t decoded_bytes_ = 0;
   std::size_t stored_bytes_ = 0;  ///< of one decoded chunk, before its elements are converted
-  /// Each is read once: those of neighbours in a row may be long.
+  /// Each index is read once and kept, because indices may be long.
   std::map<std::vector<std::int64_t>, ShardIndex> indices_;
   std::uint64_t bytes_read_ = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elements of a Zarr array that no other format has: they are read as scalars of another type.
+// Element types of Zarr arrays that other formats do not have: they are converted to scalars of another type.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,11 @@
 
 namespace understudy::volume {
 
-/// How an array stores its elements: as scalars of their type, as booleans of one byte, or as floats of half
-/// precision (IEEE 754 binary16).
+/// How an array stores its elements: as scalars of their type, as booleans of one byte, or as half-precision
+/// floats (IEEE 754 binary16).
 enum class Storage : std::uint8_t { scalar, boolean, half };
 
-/// Elements as they are stored, and the type that they are read as: u8 (0 or 1) for booleans, f32 for halves.
+/// Storage of elements, and the type they are converted to: u8 (0 or 1) for booleans, f32 for halves.
 struct ElementType {
   ScalarType type = ScalarType::u8;
   Storage storage = Storage::scalar;
@@ -25,11 +25,11 @@ constexpr ElementType half_element{ScalarType::f32, Storage::half};
 
 std::size_t stored_bytes(const ElementType& element);
 
-/// Exact: every half is a float. NaNs keep the upper bits of their payload.
+/// Exact: every half is representable as a float. NaNs keep the upper bits of their payload.
 float float_of_half(std::uint16_t bits);
 
-/// Fills `scalars` from elements whose bytes are in this processor's order. Not for Storage::scalar, where both
-/// are the same.
+/// Fills `scalars` from elements in this processor's byte order. Not for Storage::scalar, where both are the
+/// same.
 void convert_elements(Storage storage, std::span<const std::byte> elements, std::span<std::byte> scalars);
 
 }  // namespace understudy::volume

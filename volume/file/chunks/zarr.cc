@@ -22,12 +22,12 @@ namespace {
 
 using Index = std::array<int, 3>;  ///< of a chunk, x first
 
-/// One axis of the volume in the array, or one that the array does not have.
+/// One axis of the volume in the array, or one that the array lacks.
 struct ChunkedAxis {
   std::int64_t length = 1;
   std::int64_t chunk = 1;
   std::size_t stride = 0;  ///< in a decoded chunk, in scalars
-  std::size_t number = 0;  ///< among those of the array
+  std::size_t number = 0;  ///< its index among the array's axes
   bool there = false;
 };
 
@@ -65,7 +65,7 @@ class ZarrVolume : public VolumeFile {
       high[k] = int((box.high[k] - 1) / axes_[k].chunk) + 1;
     }
     for (int z = low[2]; z < high[2]; ++z) {
-      // Those of the layers before are not asked for again.
+      // Chunks of previous layers are not needed again.
       std::erase_if(decoded_, [&](const auto& entry) { return entry.first[2] < z; });
       for (int y = low[1]; y < high[1]; ++y)
         for (int x = low[0]; x < high[0]; ++x) copy_chunk({x, y, z}, box, scalars);
@@ -74,7 +74,7 @@ class ZarrVolume : public VolumeFile {
 
   std::uint64_t bytes_read() const override { return chunks_.bytes_read(); }
   std::size_t memory_to_read(const TexelBox& box) const override {
-    // Chunks of one layer, and indices of all shards.
+    // Chunks of one layer, and the indices of all shards.
     std::size_t chunks = 1, shards = 1;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int64_t in_shard =
@@ -92,7 +92,7 @@ class ZarrVolume : public VolumeFile {
 
   const ZarrArray& array() const { return chunks_.array(); }
 
-  /// How many parts of `length` a box lies in at most, wherever it begins.
+  /// Upper bound of the number of parts of `length` that a box of this extent intersects, wherever it begins.
   std::size_t parts_across(const TexelBox& box, std::size_t k, std::int64_t length) const {
     const std::int64_t in_all = (axes_[k].length + length - 1) / length;
     return std::size_t(std::min<std::int64_t>(in_all, (box.high[k] - box.low[k]) / length + 2));
@@ -107,7 +107,7 @@ class ZarrVolume : public VolumeFile {
     return decoded_.emplace(chunk, chunks_.scalars_of(numbers)).first->second;
   }
 
-  /// What of the chunk lies in `box`.
+  /// Copies the part of the chunk that lies in `box`.
   void copy_chunk(const Index& chunk, const TexelBox& box, std::span<std::byte> scalars) {
     const std::vector<std::byte>& from = decoded(chunk);
     const std::size_t bytes = scalar_bytes();
@@ -134,13 +134,13 @@ class ZarrVolume : public VolumeFile {
 
   ChunkFiles chunks_;
   std::array<ChunkedAxis, 3> axes_;
-  std::vector<std::int64_t> fixed_;  ///< numbers of the chunk along the array's other axes
-  std::size_t first_ = 0;            ///< where in a chunk the time step and the channel begin, in scalars
+  std::vector<std::int64_t> fixed_;  ///< indices of the chunk along the array's other axes
+  std::size_t first_ = 0;            ///< offset of the time step and the channel in a chunk, in scalars
   std::map<Index, std::vector<std::byte>> decoded_;
 };
 
-/// What all of the volume takes to read, of one time step and channel: chunks may hold others too, and indices
-/// of shards entries for what lies outside of the array.
+/// Checks the cost of reading the whole volume, for one time step and channel: chunks may contain others too,
+/// and shard indices may have entries outside the array.
 void check_work(const ZarrImage& image, const ZarrArray& array, const std::string& folder) {
   constexpr double most_small_chunks = 1 << 20, least_scalars = 512;
   constexpr double allowed_bytes = double(std::uint64_t(4) << 30), allowed_times = 64, index_entry_bytes = 16;

@@ -10,7 +10,7 @@
 
 namespace understudy::volume {
 
-/// An array, or the level of an OME-Zarr image, of a time step and a channel. Throws FileError.
+/// Opens an array, or a level of an OME-Zarr image, at one time step and channel. Throws FileError.
 std::unique_ptr<VolumeFile> open_zarr(const std::string& folder, const FileHints& hints,
                                       const ReadableFiles& files = {});
 

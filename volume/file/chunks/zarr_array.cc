@@ -35,7 +35,7 @@ ChunkCodec compressor_of_version_2(const json& compressor, const std::string& pa
   return compressor.is_null() ? ChunkCodec::none : zarr_codec(compressor.at("id").get<std::string>(), path);
 }
 
-/// Older programs wrote folders without saying so. The first ones may be absent, where all of them is empty.
+/// Older programs wrote nested folders without declaring them. The first ones may be missing if they are empty.
 bool has_folders(const ZarrArray& array, const std::string& folder, const ReadableFiles& files) {
   constexpr std::int64_t most_looked_at = 4096;
   if (array.shape.size() < 2 || array.chunks.empty() || array.chunks[0] < 1) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the metadata of a Zarr array says, of version 2 or 3: zarr-specs.readthedocs.io.
+// The metadata of a Zarr array, version 2 or 3: zarr-specs.readthedocs.io.
 #pragma once
 
 #include <cstddef>
@@ -14,29 +14,29 @@
 
 namespace understudy::volume {
 
-/// How the scalars of a chunk become bytes.
+/// How the scalars of a chunk are encoded as bytes.
 struct ChunkEncoding {
-  std::vector<std::size_t> order;  ///< the array's axes as they lie in a chunk, the slowest first
+  std::vector<std::size_t> order;  ///< the array's axes in the order of a chunk, slowest first
   bool big_endian = false;
   ChunkCodec codec = ChunkCodec::none;
   bool checksum = false;  ///< CRC-32C in the last four bytes
 };
 
-/// The name of a chunk's file: `prefix`, and the chunk's numbers with `separator` before each but the first.
+/// The name of a chunk's file: `prefix`, then the chunk's indices, separated by `separator`.
 struct ChunkNames {
   std::string prefix;
   char separator = '.';
 };
 
-/// Several chunks in one file, with an index of where each is.
+/// Several chunks in one file, with an index of their places.
 struct Shards {
-  std::vector<std::int64_t> chunks;  ///< how many along each axis
+  std::vector<std::int64_t> chunks;  ///< number of chunks along each axis
   bool index_in_front = false;
   bool index_big_endian = false;
   bool index_checksum = true;
 };
 
-/// An array of scalars with some axes, the slowest first as the format lists them.
+/// An array of scalars; axes are listed slowest first, as in the format.
 struct ZarrArray {
   std::vector<std::int64_t> shape;
   std::vector<std::int64_t> chunks;  ///< length of a chunk along each axis
@@ -44,7 +44,7 @@ struct ZarrArray {
   ChunkEncoding encoding;
   ChunkNames names;
   std::optional<Shards> shards;
-  std::vector<std::byte> fill;  ///< the scalar that missing chunks consist of, of type element.type
+  std::vector<std::byte> fill;  ///< the scalar that fills missing chunks, of type element.type
 };
 
 constexpr std::size_t most_zarr_axes = 5;

@@ -23,10 +23,10 @@ using nlohmann::json;
 
 struct NamedAxis {
   ZarrAxis axis;
-  double metres = 1;  ///< of its unit
+  double metres = 1;  ///< length of the axis's unit
 };
 
-/// Nothing for a name that is none of an axis.
+/// Empty if `name` is not the name of an axis.
 std::optional<ZarrAxis> axis_named(std::string name) {
   static const std::map<std::string, ZarrAxis> names{
       {"t", ZarrAxis::time}, {"time", ZarrAxis::time}, {"c", ZarrAxis::channel}, {"channel", ZarrAxis::channel},
@@ -36,7 +36,7 @@ std::optional<ZarrAxis> axis_named(std::string name) {
   return found == names.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// The units of length that OME-Zarr lists, but for those of astronomers.
+/// The units of length that OME-Zarr lists, except astronomical ones.
 std::optional<double> metres_of(const std::string& unit) {
   static const std::map<std::string, double> units{{"yoctometer", 1e-24},
                                                    {"zeptometer", 1e-21},
@@ -70,8 +70,8 @@ std::optional<double> metres_of(const std::string& unit) {
   return found == units.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// Sets the metres of all axes. Where they share a unit, or tell none, it does not matter which; that of the
-/// others stands for one that is left out.
+/// Sets the metres of all spatial axes if their units differ. An axis without a unit takes the unit of the
+/// others. If all share one unit, or have none, only ratios matter and nothing is set.
 void set_units(std::vector<NamedAxis>& axes, const std::vector<std::string>& units, const std::string& path) {
   std::string shared;
   bool differ = false;
@@ -104,7 +104,7 @@ ZarrAxis axis_of(const json& axis, const std::string& path) {
   return *named;
 }
 
-/// Version 0.3 has names alone, and those before it have none: there axes are the last of t, c, z, y and x.
+/// Version 0.3 has only names, and earlier ones have none: there, the axes are the last of t, c, z, y and x.
 std::vector<NamedAxis> axes_of(const json& scales, std::size_t count, const std::string& path) {
   if (!scales.contains("axes")) {
     const std::string version = scales.value("version", "0.1");
@@ -127,7 +127,7 @@ std::vector<NamedAxis> axes_of(const json& scales, std::size_t count, const std:
   return axes;
 }
 
-/// Later ones say where a sample lies in other ways.
+/// Refuses later versions, which specify sample positions differently.
 void check_version(const json& version, const std::string& path) {
   static constexpr std::array read{"0.1", "0.2", "0.3", "0.4", "0.5"};
   if (!version.is_string()) return;
@@ -137,7 +137,7 @@ void check_version(const json& version, const std::string& path) {
                                 read.front(), read.back(), read.back()));
 }
 
-/// Scales of an array's axes, or none.
+/// The scales of an array's axes, or none.
 std::vector<double> scale_in(const json& entry) {
   if (!entry.contains("coordinateTransformations")) return {};
   for (const json& transformation : entry.at("coordinateTransformations"))
@@ -146,7 +146,7 @@ std::vector<double> scale_in(const json& entry) {
   return {};
 }
 
-/// Of a dataset of the image in `folder`.
+/// The folder of a dataset of the image in `folder`.
 std::string folder_of(const json& dataset, const std::string& folder) {
   const std::filesystem::path below = dataset.at("path").get<std::string>();
   if (below.is_absolute() || std::ranges::find(below, "..") != below.end())
@@ -167,7 +167,7 @@ ZarrImage image_of(const json& scales, const std::string& folder, int level, con
   const std::vector<std::int64_t> shape = zarr_array(image.folder, files).shape;
   const std::vector<NamedAxis> axes = axes_of(scales, shape.size(), folder);
   const std::vector<double> own = scale_in(dataset), common = scale_in(scales);
-  // The first versions tell no scales: a level is as large as the finest one.
+  // The first versions specify no scales: every level has the extent of the finest one.
   std::vector<std::int64_t> finest = shape;
   if (own.empty() && level > 0) finest = zarr_array(folder_of(datasets.at(0), folder), files).shape;
   for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -176,7 +176,7 @@ ZarrImage image_of(const json& scales, const std::string& folder, int level, con
     const double scale = i < own.size() ? own[i] : double(finest[i]) / double(shape[i]);
     image.spacing[volume_axis(axes[i].axis)] = scale * (i < common.size() ? common[i] : 1) * axes[i].metres;
   }
-  // In the unit of the x axis, which is as good as any.
+  // In the unit of the x axis; any unit would do.
   const auto x = std::ranges::find(axes, ZarrAxis::x, &NamedAxis::axis);
   for (const NamedAxis& axis : axes) {
     if (axis.axis < ZarrAxis::z || x == axes.end()) continue;
@@ -186,14 +186,14 @@ ZarrImage image_of(const json& scales, const std::string& folder, int level, con
   return image;
 }
 
-/// What a folder says of itself.
+/// The metadata of a folder.
 struct ZarrNode {
   bool is_array = false;
-  json attributes;       ///< null where it has none
+  json attributes;       ///< null if it has none
   json dimension_names;  ///< of an array, likewise
 };
 
-/// An array can be shown without them; Python writes numbers into them that JSON does not have (NaN).
+/// An array can be shown without attributes; Python writes numbers into them that JSON lacks (NaN).
 json attributes_of_array(const std::string& folder, const ReadableFiles& files) {
   try {
     return json_in(folder, ".zattrs", files);
@@ -202,13 +202,13 @@ json attributes_of_array(const std::string& folder, const ReadableFiles& files) 
   }
 }
 
-/// Nothing where the folder has no metadata.
+/// Empty if the folder has no metadata.
 std::optional<ZarrNode> node_in(const std::string& folder, const ReadableFiles& files) {
   const json of_version_3 = json_in(folder, "zarr.json", files);
   if (!of_version_3.is_null()) {
     ZarrNode node{of_version_3.at("node_type") == "array", of_version_3.value("attributes", json()),
                   of_version_3.value("dimension_names", json())};
-    // Since 0.5 what OME-Zarr says is within one attribute.
+    // Since version 0.5, OME-Zarr's metadata is inside one attribute.
     if (node.attributes.is_object() && node.attributes.contains("ome") &&
         node.attributes.at("ome").is_object()) {
       node.attributes = json(node.attributes.at("ome"));
@@ -228,9 +228,9 @@ bool is_image(const ZarrNode& node) {
   return node.attributes.is_object() && node.attributes.contains("multiscales");
 }
 
-/// Of an array that is no image: as its names say, or the last of t, c, z, y, x.
+/// The axes of an array that is not an image: by its dimension names, or the last of t, c, z, y, x.
 std::vector<ZarrAxis> axes_of_array(const json& dimension_names, std::size_t count, const std::string& folder) {
-  // Version 3 has null for a dimension without a name: of an array with one such, no name counts.
+  // Version 3 has null for dimensions without a name: if any is unnamed, all names are ignored.
   const bool have_names =
       dimension_names.is_array() && !dimension_names.empty() &&
       std::ranges::none_of(dimension_names, [](const json& name) { return name.is_null(); });
@@ -248,12 +248,12 @@ std::vector<ZarrAxis> axes_of_array(const json& dimension_names, std::size_t cou
   }
   std::vector<ZarrAxis> axes{ZarrAxis::time, ZarrAxis::channel, ZarrAxis::z, ZarrAxis::y, ZarrAxis::x};
   axes.erase(axes.begin(), axes.end() - std::ptrdiff_t(std::min(count, axes.size())));
-  if (count == 4) axes.front() = ZarrAxis::time;  // as files of other formats have it
+  if (count == 4) axes.front() = ZarrAxis::time;  // as in files of other formats
   return axes;
 }
 
-/// The image of which the array in `folder` is a level: an array of an image does not know its axes. Empty:
-/// none.
+/// The image of which the array in `folder` is a level, because such an array does not specify its axes. Empty
+/// if there is none.
 std::string image_above(const std::string& folder, const ReadableFiles& files) {
   std::filesystem::path path = std::filesystem::absolute(folder).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();
@@ -264,13 +264,13 @@ std::string image_above(const std::string& folder, const ReadableFiles& files) {
       if (!node) return {};
       if (is_image(*node)) return path.string();
     } catch (const FileError&) {
-      return {};  // it may lie where files are not read
+      return {};  // it may lie where files must not be read
     }
   }
   return {};
 }
 
-/// As climate models and microscopes pack values (CF conventions).
+/// A packing attribute of climate models and microscopes (CF conventions).
 double number_in(const json& attributes, const char* name, double otherwise) {
   if (!attributes.is_object() || !attributes.contains(name) || !attributes.at(name).is_number())
     return otherwise;

@@ -21,9 +21,9 @@ namespace understudy::volume {
 
 namespace {
 
-/// Labels and properties of an image may be long.
+/// Generous, because labels and properties of an image may be long.
 constexpr std::size_t most_metadata_bytes = std::size_t(8) << 20;
-/// Copying a value takes a function call for each level.
+/// Limits recursion: copying a value takes a function call per level.
 constexpr int deepest = 64;
 
 template <typename Scalar>
@@ -33,7 +33,7 @@ std::vector<std::byte> bytes_of(Scalar scalar) {
   return bytes;
 }
 
-/// A number of eight bytes may be too long for a double, so that integers stay what they are.
+/// Integers of eight bytes may be too long for a double, so they are not converted to one.
 template <typename Scalar>
 std::optional<Scalar> scalar_of(const nlohmann::json& number) {
   if constexpr (std::is_floating_point_v<Scalar>) {
@@ -45,7 +45,7 @@ std::optional<Scalar> scalar_of(const nlohmann::json& number) {
     if (number.is_number_integer() && !number.is_number_unsigned() &&
         std::in_range<Scalar>(number.get<std::int64_t>()))
       return Scalar(number.get<std::int64_t>());
-    // Some programs write 0.0; all doubles up to here are exact.
+    // Some programs write 0.0; all integers up to this one are exact as doubles.
     constexpr double exact = 9007199254740992;
     if (number.is_number_float() && std::abs(value) <= exact && value == std::trunc(value) &&
         std::in_range<Scalar>(std::int64_t(value)))
@@ -78,7 +78,7 @@ std::optional<Float> float_named(std::string_view text, Storage storage) {
 
 template <typename Scalar>
 std::optional<Scalar> fill_of(const nlohmann::json& fill, Storage storage) {
-  if (fill.is_null()) return Scalar{};  // whoever wrote the file did not care
+  if (fill.is_null()) return Scalar{};  // undefined: any value will do
   if (storage == Storage::boolean && fill.is_boolean()) return Scalar(fill.get<bool>() ? 1 : 0);
   if (fill.is_number()) return scalar_of<Scalar>(fill);
   if constexpr (std::is_floating_point_v<Scalar>)

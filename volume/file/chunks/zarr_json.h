@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The JSON files of a Zarr folder, and what both versions of the format say in the same way.
+// The JSON files of a Zarr folder, and metadata that both versions of the format encode in the same way.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,11 +20,11 @@ namespace understudy::volume {
 
 [[noreturn]] void fail_zarr(const std::string& path, const std::string& what);
 
-/// Null where there is no such file. Throws FileError where it is no object, or nests deeper than metadata
-/// does.
+/// Null if there is no such file. Throws FileError if it is not an object, or is nested deeper than metadata
+/// can be.
 nlohmann::json json_in(const std::string& folder, const char* name, const ReadableFiles& files);
 
-/// What `function` gives; what nlohmann-json throws of values of other types than they should have as a
+/// Returns the result of `function`. Converts exceptions of nlohmann-json for values of unexpected types to
 /// FileError.
 template <typename Function>
 auto with_json(const std::string& path, const Function& function) {
@@ -35,17 +35,17 @@ auto with_json(const std::string& path, const Function& function) {
   }
 }
 
-/// Throws FileError for a codec that is not read.
+/// Throws FileError for an unsupported codec.
 ChunkCodec zarr_codec(const std::string& name, const std::string& path);
 
-/// A value as messages show it: its beginning.
+/// The beginning of a value, for messages.
 std::string zarr_text(const nlohmann::json& value);
 
-/// Whole numbers, such as lengths along axes. Throws FileError.
+/// Integers, such as lengths along axes. Throws FileError.
 std::vector<std::int64_t> zarr_lengths(const nlohmann::json& numbers, const std::string& path);
 
-/// The scalar that missing chunks consist of, of type `element.type`. Hexadecimal digits are the bits of an
-/// element as it is stored; null is 0. Throws FileError for what is no value of such an element.
+/// The scalar that fills missing chunks, of type `element.type`. Hexadecimal digits are the bits of an element
+/// as it is stored; null is 0. Throws FileError for invalid values.
 std::vector<std::byte> zarr_fill_value(const nlohmann::json& fill, const ElementType& element,
                                        const std::string& path);
 

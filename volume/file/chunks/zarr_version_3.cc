@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A codec, a grid or a way to name chunks: its name alone, or with what it is configured by.
+/// A codec, a chunk grid or a chunk key encoding: its name, optionally with its configuration.
 struct Extension {
   std::string name;
   json configuration = json::object();
@@ -66,10 +66,10 @@ ChunkNames chunk_names_of(const json& encoding, const std::string& path) {
   return {as_in_version_2 ? "" : "c" + separator, separator.front()};
 }
 
-/// Axes that lie in `order` in a chunk, behind a transposition.
+/// The axis order of a chunk after transposing one with axes in `order`.
 std::vector<std::size_t> transposed(const std::vector<std::size_t>& order, const json& permutation,
                                     const std::string& path) {
-  // Drafts of the format had the orders of NumPy.
+  // Drafts of the format used NumPy's orders.
   if (permutation == "C") return order;
   if (permutation == "F") return {order.rbegin(), order.rend()};
   const std::vector<std::int64_t> places = zarr_lengths(permutation, path);
@@ -85,7 +85,7 @@ std::vector<std::size_t> transposed(const std::vector<std::size_t>& order, const
   return turned;
 }
 
-/// Whether scalars are stored big-endian; those of one byte need not say.
+/// Whether scalars are stored big-endian; single-byte scalars need not specify it.
 bool is_big_endian(const json& configuration, std::size_t bytes, const std::string& path) {
   const json endian = configuration.value("endian", json());
   if (endian.is_null() && bytes == 1) return false;
@@ -95,13 +95,13 @@ bool is_big_endian(const json& configuration, std::size_t bytes, const std::stri
   return endian == "big";
 }
 
-/// Codecs of other programs have the name of numcodecs in front.
+/// Codecs of other programs are prefixed with the name of numcodecs.
 std::string compressor_named(const std::string& name) {
   constexpr std::string_view registry = "numcodecs.";
   return name.starts_with(registry) ? name.substr(registry.size()) : name;
 }
 
-/// Of codecs in the order in which they are written: transpositions, then bytes, then what compresses these.
+/// Reads codecs in the order in which they are applied: transpositions, then bytes, then compressors.
 ChunkEncoding encoding_of(const json& codecs, std::size_t axes, std::size_t element_bytes,
                           const std::string& path) {
   ChunkEncoding encoding;
@@ -173,7 +173,7 @@ void read_codecs(const json& codecs, ZarrArray& array, const std::string& path) 
   }
 }
 
-/// An extension that is not known changes what the array means, unless it says that it does not.
+/// An unknown extension changes the meaning of the array unless it declares that it does not.
 void check_names(const json& metadata, const std::string& path) {
   static constexpr std::array known{
       "zarr_format",        "node_type",  "shape",  "data_type",  "chunk_grid",

@@ -9,7 +9,7 @@
 
 namespace understudy::volume {
 
-/// What `path`, a zarr.json, says. Throws FileError, or what nlohmann-json throws.
+/// Interprets the contents of `path`, a zarr.json. Throws FileError, or the exceptions of nlohmann-json.
 ZarrArray array_of_version_3(const nlohmann::json& metadata, const std::string& path);
 
 }  // namespace understudy::volume

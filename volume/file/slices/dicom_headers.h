@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Headers of DICOM files that were parsed before, for those who open the time steps of one folder in turn.
+// A cache of parsed DICOM headers, for opening the time steps of one folder in turn.
 #pragma once
 
 #include <sys/types.h>
@@ -18,19 +18,19 @@ namespace understudy::volume {
 
 class DicomHeaders {
  public:
-  /// Those of `paths`, in their order, without the files that hold no image. A file is parsed again only where
-  /// it has changed since. Those of other files are forgotten. Throws FileError.
+  /// The headers of `paths`, in their order, without files that contain no image. Only files that have changed
+  /// are parsed again. Headers of other files are dropped. Throws FileError.
   std::vector<std::shared_ptr<const DicomHeader>> of(std::span<const std::string> paths,
                                                      const ReadableFiles& files);
 
  private:
-  /// What tells that a file is another one, or was written to.
+  /// Detects whether a file was replaced or modified.
   struct Version {
     dev_t device = 0;
     ino_t number = 0;
     off_t bytes = 0;
     timespec written{};
-    timespec changed{};  ///< written to, renamed or given another time
+    timespec changed{};  ///< time of the last write, rename or change of attributes
 
     bool operator==(const Version& other) const;
   };

@@ -2,7 +2,7 @@
 #include "volume/file/slices/dicom_image.h"
 
 #include <dcmtk/config/osconfig.h>
-// Before the rest of DCMTK.
+// Must precede the rest of DCMTK.
 #include <dcmtk/dcmdata/dcfcache.h>
 #include <dcmtk/dcmdata/dcpixseq.h>
 #include <dcmtk/dcmdata/dcpxitem.h>
@@ -40,19 +40,19 @@ namespace {
 constexpr std::uint64_t preamble_bytes = 128;
 constexpr int most_frames = 1 << 17;
 
-/// DCMTK says what went wrong on the standard error stream, too, where nobody asked for it.
+/// By default, DCMTK also logs errors to the standard error stream.
 void prepare_dcmtk() {
   static std::once_flag once;
   std::call_once(once, [] {
     OFLog::configure(OFLogger::OFF_LOG_LEVEL);
-    // Archives write elements without their types, which are known all the same.
+    // Archives write elements with unknown value representations, which DCMTK can look up.
     dcmEnableUnknownVRConversion.set(OFTrue);
     DJDecoderRegistration::registerCodecs();
     DJLSDecoderRegistration::registerCodecs();
   });
 }
 
-/// What is thrown of a damaged file, as a FileError.
+/// Converts exceptions caused by a damaged file to FileError.
 template <typename Function>
 auto with_dcmtk(const std::string& path, const Function& function) {
   prepare_dcmtk();
@@ -67,7 +67,7 @@ auto with_dcmtk(const std::string& path, const Function& function) {
   }
 }
 
-/// An open file under a name that DCMTK can open: whoever may read it has been checked.
+/// An open file under a name that DCMTK can open, so that permissions are checked only once.
 class OpenFile {
  public:
   OpenFile(const std::string& path, const ReadableFiles& files)
@@ -95,12 +95,12 @@ class OpenFile {
 
 using Numbers = std::vector<double>;
 
-/// Those before the first that is none, whatever the value representation.
+/// The numbers before the first invalid one, for any value representation.
 Numbers numbers_of(DcmItem* item, const DcmTagKey& tag, std::size_t most) {
   Numbers found;
   OFString text;
   DcmElement* element = nullptr;
-  // Of unknown types the text is that of bytes.
+  // For type UN, the text would be that of bytes.
   if (item == nullptr || item->findAndGetElement(tag, element).bad() || element->ident() == EVR_UN ||
       element->getOFStringArray(text).bad())
     return found;
@@ -130,20 +130,20 @@ unsigned short_of(DcmItem& item, const DcmTagKey& tag, unsigned otherwise) {
   return item.findAndGetUint16(tag, number).good() ? number : otherwise;
 }
 
-/// The first one.
+/// The first item of a sequence.
 DcmItem* item_of(DcmItem* item, const DcmTagKey& sequence) {
   DcmItem* found = nullptr;
   return item != nullptr && item->findAndGetSequenceItem(sequence, found).good() ? found : nullptr;
 }
 
-/// How the bits of a pixel make a number.
+/// How the bits of a pixel form a number.
 struct PixelBits {
   unsigned allocated = 0;
   unsigned stored = 0;
   unsigned high = 0;
   bool with_sign = false;
 
-  /// Whether they are the number itself.
+  /// Whether the allocated bits are the number itself.
   bool fill_all() const { return stored == allocated; }
 };
 
@@ -171,7 +171,7 @@ std::optional<ScalarType> scalar_type(const PixelBits& bits) {
   }
 }
 
-/// What the Frame Increment Pointer says.
+/// The meaning of the Frame Increment Pointer.
 enum class FrameOrder { by_place, by_time, unknown };
 
 FrameOrder frame_order(DcmItem& image) {
@@ -190,7 +190,7 @@ FrameOrder frame_order(DcmItem& image) {
   return order;
 }
 
-/// Why an image cannot be shown as scalars; empty where it can.
+/// Why an image cannot be shown as scalars; empty if it can.
 std::string trouble_with(DcmItem& image) {
   const std::string meaning = text_of(image, DCM_PhotometricInterpretation);
   if (short_of(image, DCM_SamplesPerPixel, 1) != 1 || (meaning != "MONOCHROME1" && meaning != "MONOCHROME2"))
@@ -210,19 +210,19 @@ std::string trouble_with(DcmItem& image) {
   return {};
 }
 
-/// The elements of an image with frames: `macro` of one frame or of all, or the image itself.
+/// The elements of a multi-frame image: `macro` of one frame or of all frames, or the image itself.
 class Frames {
  public:
   explicit Frames(DcmItem& image)
       : image_(image), shared_(item_of(&image, DCM_SharedFunctionalGroupsSequence)) {
     DcmSequenceOfItems* groups = nullptr;
     if (image.findAndGetSequence(DCM_PerFrameFunctionalGroupsSequence, groups).bad()) return;
-    // Asked for by its number, an item is looked for from the first one on.
+    // Access by index would search from the first item every time.
     for (DcmObject* item = nullptr; (item = groups->nextInContainer(item)) != nullptr;)
       own_.push_back(dynamic_cast<DcmItem*>(item));
   }
 
-  /// How many say something of their own.
+  /// Number of frames with elements of their own.
   std::size_t own() const { return own_.size(); }
 
   Numbers numbers(std::size_t frame, const DcmTagKey& macro, const DcmTagKey& tag, std::size_t most) const {
@@ -242,7 +242,7 @@ std::optional<DicomPlane> plane_of(const Numbers& position, const Numbers& ways)
   if (position.size() != 3 || ways.size() != 6) return std::nullopt;
   const Vec3 rows{ways[0], ways[1], ways[2]}, columns{ways[3], ways[4], ways[5]}, normal = cross(rows, columns);
   const double size = length(normal);
-  constexpr double shortest = 0.5;  // 1 for rows and columns at right angles
+  constexpr double shortest = 0.5;  // 1 for perpendicular rows and columns
   if (!(size > shortest)) return std::nullopt;
   return DicomPlane{{position[0], position[1], position[2]},
                     scale(rows, 1 / length(rows)),
@@ -250,8 +250,8 @@ std::optional<DicomPlane> plane_of(const Numbers& position, const Numbers& ways)
                     scale(normal, 1 / size)};
 }
 
-/// Frames that say nothing of their own lie along the normal of the first one, as radiotherapy tells by
-/// `offsets`; or nobody knows where.
+/// Places frames without elements of their own along the normal of the first one, by the `offsets` of
+/// radiotherapy; without these, their positions are unknown.
 void place_by_offsets(std::vector<DicomFrame>& frames, const Numbers& offsets) {
   const std::optional<DicomPlane> first = frames.front().plane;
   const bool is_told = first && offsets.size() == frames.size();
@@ -263,7 +263,7 @@ void place_by_offsets(std::vector<DicomFrame>& frames, const Numbers& offsets) {
 }
 
 std::vector<DicomFrame> frames_of(DcmItem& image, std::uint64_t file_bytes, const std::string& path) {
-  // Each has a header of its own where it is compressed, and a pixel where it is not.
+  // Each frame has at least a header if compressed, and its pixels otherwise.
   constexpr std::uint64_t least_bytes = 8;
   const int count = integer_of(image, DCM_NumberOfFrames, 1);
   const std::uint64_t pixels =
@@ -315,7 +315,7 @@ Vec3 spacing_of(DcmItem& image) {
   if (pixels.size() != 2) pixels = {1, 1};
   Numbers slices = first(DCM_SpacingBetweenSlices, 1);
   if (slices.empty()) slices = first(DCM_SliceThickness, 1);
-  // Between rows first, which is along y.
+  // DICOM lists the spacing between rows first, which is along y.
   return {believable_spacing(pixels[1]), believable_spacing(pixels[0]),
           believable_spacing(slices.empty() ? 1 : slices[0])};
 }
@@ -340,7 +340,7 @@ DicomHeader header_of(DcmItem& image, std::uint64_t file_bytes, const std::strin
   return header;
 }
 
-/// Makes numbers of bits, in place.
+/// Extracts numbers from the stored bits, in place.
 template <typename Unsigned>
 void extract(const PixelBits& bits, std::span<std::byte> pixels) {
   constexpr unsigned width = std::numeric_limits<Unsigned>::digits;
@@ -348,7 +348,7 @@ void extract(const PixelBits& bits, std::span<std::byte> pixels) {
   for (std::size_t at = 0; at + sizeof(Unsigned) <= pixels.size(); at += sizeof(Unsigned)) {
     Unsigned pixel;
     std::memcpy(&pixel, pixels.data() + at, sizeof pixel);
-    pixel = Unsigned(pixel << above);  // the highest bit that counts is the highest one now
+    pixel = Unsigned(pixel << above);  // moves the highest used bit to the top
     if (bits.with_sign)
       pixel = Unsigned(std::make_signed_t<Unsigned>(pixel) >> unused);
     else
@@ -369,13 +369,13 @@ bool is_dicom(const std::string& path, const ReadableFiles& files) {
   const std::size_t got = file->read(0, std::as_writable_bytes(std::span(begin)));
   const std::string_view text(begin.data(), got);
   if (text.substr(std::min(got, std::size_t(preamble_bytes))) == "DICM") return true;
-  // Elements of group 8 come first, little endian.
+  // Elements of group 8 come first, in little-endian order.
   return has_extension(path, ".dcm") && text.substr(0, 2) == std::string_view("\x08\0", 2);
 }
 
 std::optional<DicomHeader> dicom_header(const std::string& path, const ReadableFiles& files) {
   return with_dcmtk(path, [&]() -> std::optional<DicomHeader> {
-    constexpr int deepest = 32;  // reports nest, images hardly
+    constexpr int deepest = 32;  // reports are deeply nested, images hardly
     if (!sequences_nest_within(*open_file(path, files), deepest))
       fail_dicom(path, fmt::format(
                            "its header is damaged: elements of no type, or sequences more than {} deep in each "
@@ -384,7 +384,7 @@ std::optional<DicomHeader> dicom_header(const std::string& path, const ReadableF
     const OpenFile open(path, files);
     DcmMetaInfo meta;
     OFString syntax;
-    // All of the file would have to be inflated before anything is known of it.
+    // The whole file would have to be inflated to read its header.
     if (meta.loadFile(open.name()).good() && meta.findAndGetOFString(DCM_TransferSyntaxUID, syntax).good() &&
         trimmed(syntax.c_str()) == UID_DeflatedExplicitVRLittleEndianTransferSyntax) {
       DicomHeader header;
@@ -408,7 +408,7 @@ std::optional<DicomHeader> dicom_header(const std::string& path, const ReadableF
 class DicomFrames::Decoder {
  public:
   Decoder(const DicomHeader& header, const ReadableFiles& files) : header_(header), open_(header.path, files) {
-    // Pixels stay in the file until they are asked for.
+    // Pixels stay in the file until they are requested.
     constexpr std::uint16_t group = 0x7fe0, behind_pixels = 0x0011;
     const OFCondition read = file_.loadFileUntilTag(open_.name(), EXS_Unknown, EGL_noChange, DCM_MaxReadLength,
                                                     ERM_autoDetect, DcmTagKey(group, behind_pixels));
@@ -435,7 +435,7 @@ class DicomFrames::Decoder {
   }
 
  private:
-  // These throw std::runtime_error that says why.
+  // These throw std::runtime_error with the reason.
 
   void decode(int frame, std::span<std::byte> scalars) {
     const E_TransferSyntax syntax = file_.getDataset()->getOriginalXfer();
@@ -448,7 +448,7 @@ class DicomFrames::Decoder {
     read_by_dcmtk(frame, scalars);
   }
 
-  /// DCMTK decodes what is there into as many bytes as it finds fit.
+  /// DCMTK decodes as many bytes as the JPEG header specifies, so it must match the DICOM header.
   void check_jpeg(std::span<const std::byte> image) const {
     const std::optional<JpegFrame> found = first_jpeg_frame(image);
     if (!found) throw std::runtime_error("its JPEG header is damaged");
@@ -461,15 +461,15 @@ class DicomFrames::Decoder {
   }
 
   void read_by_dcmtk(int frame, std::span<std::byte> scalars) {
-    buffer_.resize(scalars.size() + scalars.size() % 2);  // room is wanted for an even number of bytes
+    buffer_.resize(scalars.size() + scalars.size() % 2);  // DCMTK requires room for an even number of bytes
     OFString colours;
-    // Of compressed pixels, where the frame begins: behind a table, or looked for.
+    // For compressed pixels, the first fragment of the frame: from a table, or searched.
     Uint32 fragment = header_.frames.size() > 1 ? Uint32(frame) + 1 : 0;
     const OFCondition done = pixels_->getUncompressedFrame(
         file_.getDataset(), Uint32(frame), fragment, buffer_.data(), Uint32(buffer_.size()), colours, &cache_);
     if (done.bad()) throw std::runtime_error(done.text());
     std::copy_n(buffer_.begin(), scalars.size(), scalars.begin());
-    // Words of 16 bits were put into native order, and two of them are a pixel.
+    // DCMTK converts 16-bit words to native order, and here two of them form a pixel.
     if (bits_.allocated == 32 && file_.getDataset()->getOriginalXfer() == EXS_BigEndianExplicit)
       for (std::size_t at = 0; at + 4 <= scalars.size(); at += 4)
         std::swap_ranges(scalars.begin() + std::ptrdiff_t(at), scalars.begin() + std::ptrdiff_t(at + 2),
@@ -479,19 +479,19 @@ class DicomFrames::Decoder {
   void read_jpeg2000(std::span<const std::byte> image, std::span<std::byte> scalars) const {
     const std::vector<std::int32_t> samples = decode_jpeg2000(image, header_.size);
     const std::size_t scalar = bytes_per_scalar(header_.type);
-    // The lowest bytes; those above the stored bits are made from them.
+    // Copies the lowest bytes; bits above the stored ones are extended later.
     static_assert(std::endian::native == std::endian::little);
     for (std::size_t i = 0; i < samples.size(); ++i)
       std::memcpy(scalars.data() + i * scalar, &samples[i], scalar);
   }
 
-  /// The compressed bytes of a frame, which is one fragment, or all of them are of the only frame.
+  /// The compressed bytes of a frame: its one fragment, or all fragments of the only frame.
   std::vector<std::byte> fragments_of(int frame) {
     DcmPixelSequence* sequence = nullptr;
     const E_TransferSyntax syntax = file_.getDataset()->getOriginalXfer();
     const OFCondition found = pixels_->getEncapsulatedRepresentation(syntax, nullptr, sequence);
     const std::size_t frames = header_.frames.size();
-    // The first item is a table of where frames begin.
+    // The first item is a table of frame offsets.
     const std::size_t fragments = found.good() && sequence->card() > 0 ? sequence->card() - 1 : 0;
     if (fragments < frames || (fragments != frames && frames != 1))
       throw std::runtime_error("its frames lie in several fragments");

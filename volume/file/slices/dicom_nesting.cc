@@ -19,12 +19,12 @@ constexpr std::uint32_t undefined_length = 0xFFFFFFFF, item = 0xFFFEE000, item_e
                         sequence_ends = 0xFFFEE0DD, pixel_data = 0x7FE00010;
 constexpr std::uint64_t no_end = std::numeric_limits<std::uint64_t>::max(), mark_end = 132;
 
-/// Bytes by their place, read in parts.
+/// Random access to bytes, buffered.
 class Window {
  public:
   explicit Window(ByteSource& file) : file_(file) {}
 
-  /// Zeros behind the end.
+  /// Zeros after the end of the file.
   std::array<std::uint8_t, 12> at(std::uint64_t place) {
     std::array<std::uint8_t, 12> bytes{};
     if (place < first_ || place + bytes.size() > first_ + filled_) {
@@ -55,7 +55,7 @@ struct Element {
   std::uint32_t length = 0;
   std::size_t header_bytes = 8;
   bool is_sequence = false;
-  bool is_unknown = false;  ///< of type UN, within which types are not told
+  bool is_unknown = false;  ///< of type UN, inside which value representations are implicit
 };
 
 std::uint32_t number(std::span<const std::uint8_t> bytes, bool big_endian) {
@@ -69,7 +69,7 @@ bool is_type(std::uint8_t a, std::uint8_t b) {
   return a >= 'A' && a <= 'Z' && b >= 'A' && b <= 'Z';
 }
 
-/// None where the type is not one of DICOM's, whose lengths readers guess.
+/// Empty if the value representation is not one of DICOM's: readers would guess its length.
 std::optional<Element> element_at(Window& window, std::uint64_t place, const Syntax& syntax) {
   const std::array<std::uint8_t, 12> bytes = window.at(place);
   const auto part = [&](std::size_t first, std::size_t count) {
@@ -93,7 +93,7 @@ std::optional<Element> element_at(Window& window, std::uint64_t place, const Syn
     found.is_sequence = type == "SQ";
     found.is_unknown = type == "UN";
   }
-  // What it is may not be told; sequences begin with an item.
+  // The value representation may be unknown; sequences begin with an item.
   if (found.length == undefined_length) found.is_sequence = true;
   if (!found.is_sequence && found.length >= 8) {
     const std::array<std::uint8_t, 12> value = window.at(place + found.header_bytes);
@@ -104,7 +104,7 @@ std::optional<Element> element_at(Window& window, std::uint64_t place, const Syn
   return found;
 }
 
-/// Of the elements behind group 2, which says it and is passed over.
+/// The transfer syntax of the elements after group 2, which specifies it and is skipped.
 std::optional<Syntax> syntax_behind_meta_information(Window& window, std::uint64_t& place) {
   constexpr std::uint32_t syntax_uid = 0x00020010, longest_uid = 64;
   constexpr std::string_view deflated = "1.2.840.10008.1.2.1.99";
@@ -113,15 +113,15 @@ std::optional<Syntax> syntax_behind_meta_information(Window& window, std::uint64
   for (;;) {
     const std::optional<Element> found = element_at(window, place, meta);
     if (!found || found->tag >> 16 != 2) break;
-    if (found->is_sequence) return std::nullopt;  // there are none in it
+    if (found->is_sequence) return std::nullopt;  // group 2 has no sequences
     if (found->tag == syntax_uid)
       for (std::uint32_t i = 0; i < std::min(found->length, longest_uid); ++i)
         if (const std::uint8_t c = window.at(place + found->header_bytes + i)[0]; c != 0 && c != ' ')
           uid += char(c);
     place += found->header_bytes + found->length;
   }
-  if (uid == deflated) place = no_end;  // nobody reads on
-  // Without meta information the first element tells.
+  if (uid == deflated) place = no_end;  // the file is refused elsewhere
+  // Without meta information, the first element determines it.
   const std::array<std::uint8_t, 12> first =
       place == no_end ? std::array<std::uint8_t, 12>{} : window.at(place);
   const bool looks_explicit = is_type(first[4], first[5]);

@@ -19,13 +19,13 @@ namespace {
 
 // Directions are written with six digits.
 constexpr double least_cosine = 0.9999;
-// Of the usual distance: what scanners round, and what a missing slice is far beyond.
+// Relative to the usual distance: tolerates rounding by scanners, but no missing slice.
 constexpr double most_uneven = 0.1;
-// Of a pixel: slices that lie closer, and closer than `rounded`, are at one place; rows that are shifted by
-// less lie behind each other.
+// In pixels. Slices closer than this, and closer than `rounded`, are at the same place; rows that are shifted
+// by less than `most_shifted` count as aligned.
 constexpr double same_place = 0.1;
 constexpr double most_shifted = 0.5;
-// In mm: positions are written with two digits behind the point at least.
+// In mm: positions are written with at least two decimals.
 constexpr double rounded = 1e-2;
 
 std::string name_in(const std::string& path) {
@@ -66,12 +66,12 @@ void check_alike(const DicomFiles& files) {
   }
 }
 
-/// What says which of several images of a place comes first.
+/// Sort key of several images at one place.
 auto order_of(const DicomImage& image) {
   return std::tie(image.file->order, image.header().time, image.frame);
 }
 
-/// All of them, each at a place of its own.
+/// All images, each at a place of its own.
 std::vector<DicomPlace> images_of(const DicomFiles& files) {
   std::vector<DicomPlace> images;
   for (const auto& file : files)
@@ -79,7 +79,7 @@ std::vector<DicomPlace> images_of(const DicomFiles& files) {
   return images;
 }
 
-/// Without planes: by number, but frames that are said to follow each other in time are of one place.
+/// Without planes: sorts by number, but frames that are declared to follow each other in time share one place.
 std::vector<DicomPlace> places_by_number(DicomFiles files) {
   std::ranges::stable_sort(files, {}, [](const auto& file) { return file->order.back(); });
   std::vector<DicomPlace> places;

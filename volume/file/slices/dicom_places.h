@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the images of a DICOM series lie, one behind the other.
+// The spatial order of the images of a DICOM series.
 #pragma once
 
 #include <cstddef>
@@ -21,21 +21,21 @@ struct DicomImage {
   const std::optional<DicomPlane>& plane() const { return header().plane; }
 };
 
-/// Images that lie at one place, in the order of time.
+/// The images at one place, in temporal order.
 struct DicomPlace {
-  double along = 0;  ///< in mm, in the direction of the slices' normal
+  double along = 0;  ///< in mm, along the normal of the slices
   std::vector<DicomImage> images;
 };
 
 using DicomFiles = std::vector<std::shared_ptr<const DicomHeader>>;
 
-/// Of the files of one series, from first to last, as many images at each place; without planes each image has
-/// a place of its own, by the number of its file. Throws FileError where they make no box of slices: other
-/// sizes, directions or distances, images that are missing or double, and rows of slices that are shifted, as
-/// those of a tilted gantry are.
+/// The places of one series' files, from first to last, with equally many images at each. Without planes, each
+/// image has a place of its own, by the number of its file. Throws FileError if they do not form a box of
+/// slices: different sizes, directions or distances, missing or duplicate images, and slices with shifted rows,
+/// as from a tilted gantry.
 std::vector<DicomPlace> places_of(DicomFiles files);
 
-/// Between two places, in mm.
+/// The distance between two places, in mm.
 double distance_of(const std::vector<DicomPlace>& places);
 
 }  // namespace understudy::volume

@@ -9,7 +9,7 @@ namespace understudy::volume {
 
 namespace {
 
-// A count of segments, and where each of at most 15 begins.
+// The number of segments, and the offsets of at most 15.
 constexpr std::size_t rle_header_bytes = 64;
 
 std::size_t little_endian(std::span<const std::byte> bytes) {
@@ -18,7 +18,7 @@ std::size_t little_endian(std::span<const std::byte> bytes) {
   return number;
 }
 
-/// One byte of each scalar, by PackBits: every `step`th of `plane` from the first on.
+/// Decodes one byte of each scalar (PackBits): every `step`th byte of `plane`, starting with the first.
 void unpack(std::span<const std::byte> packed, std::size_t step, std::span<std::byte> plane) {
   std::size_t at = 0, next = 0;
   const auto put = [&](std::byte value) {

@@ -24,14 +24,14 @@ namespace {
 
 using Series = std::map<std::string, DicomFiles>;
 
-/// By Series Instance UID.
+/// Groups files by Series Instance UID.
 Series series_in(const DicomFiles& files) {
   Series found;
   for (const auto& header : files) found[header->series].push_back(header);
   return found;
 }
 
-/// Lists what there is to choose from.
+/// Throws a FileError that lists the available series.
 [[noreturn]] void fail_to_choose(const std::string& folder, const Series& series) {
   constexpr std::size_t most_listed = 20;
   std::string list;
@@ -62,7 +62,7 @@ DicomFiles chosen_series(const std::string& folder, Series series, const std::st
 
 class DicomSlices : public SliceImages {
  public:
-  /// `as_values`: they mean their values differently, which are therefore computed, as floats.
+  /// `as_values`: the images' rescaling differs, so their values are computed, as floats.
   DicomSlices(std::vector<DicomImage> images, bool as_values, const ReadableFiles& readable)
       : images_(std::move(images)), as_values_(as_values), readable_(readable) {}
 
@@ -76,9 +76,9 @@ class DicomSlices : public SliceImages {
     compute_values(image, stored, scalars);
   }
 
-  /// Of a file with several frames, the share of those that were decoded.
+  /// For a file with several frames, in proportion to the decoded frames.
   std::uint64_t bytes_read() const override { return bytes_read_; }
-  /// JPEG 2000: an image, its tile and a copy, of four bytes a pixel; and the largest file as it is compressed.
+  /// JPEG 2000: image, tile and copy, with four bytes per pixel each; and the largest compressed file.
   std::size_t memory_to_read() const override {
     constexpr std::size_t bytes_of_pixel = 16;
     std::uint64_t largest = 0;
@@ -127,7 +127,7 @@ std::unique_ptr<VolumeFile> open_dicom_series(const std::string& folder, std::sp
   for (const DicomPlace& place : places) images.push_back(place.images[std::size_t(time_step)]);
   const DicomHeader& first = *images.front().file;
   const DicomFrame& meaning = images.front().header();
-  // All steps mean their values alike, or none is taken for what it stores.
+  // If all time steps have the same rescaling, scalars stay as stored; otherwise values are computed.
   const bool alike = std::ranges::all_of(places, [&](const DicomPlace& place) {
     return std::ranges::all_of(place.images, [&](const DicomImage& image) {
       return image.header().slope == meaning.slope && image.header().intercept == meaning.intercept;

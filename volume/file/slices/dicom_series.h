@@ -12,10 +12,10 @@
 
 namespace understudy::volume {
 
-/// The volume of those DICOM `files` that belong to one series, all of them in `folder`. What holds no image is
-/// passed over. Slices lie in the order of their positions in the patient; where several lie at each position
-/// they are time steps, in the order of their numbers. `chosen`: a file of the series that is meant; empty: all
-/// images must belong to one. `headers`: those that are known. Throws FileError, also where slices are missing.
+/// Opens the volume of those DICOM `files`, all in `folder`, that belong to one series. Files without an image
+/// are ignored. Slices are ordered by their positions in the patient; several images at each position are time
+/// steps, in the order of their numbers. `chosen`: a file of the requested series; empty: all images must
+/// belong to one. `headers`: cache of headers. Throws FileError, also if slices are missing.
 std::unique_ptr<VolumeFile> open_dicom_series(const std::string& folder, std::span<const std::string> files,
                                               const std::string& chosen, int time_step,
                                               const ReadableFiles& readable, DicomHeaders& headers);

@@ -13,7 +13,7 @@ namespace understudy::volume {
 
 namespace {
 
-/// The bytes of an image, as OpenJPEG reads them.
+/// The bytes of an image, as a stream for OpenJPEG.
 struct Memory {
   std::span<const std::byte> bytes;
   std::size_t at = 0;
@@ -22,7 +22,7 @@ struct Memory {
 OPJ_SIZE_T read_memory(void* to, OPJ_SIZE_T count, void* user) {
   auto* const memory = static_cast<Memory*>(user);
   const std::size_t got = std::min<std::size_t>(count, memory->bytes.size() - memory->at);
-  if (got == 0) return static_cast<OPJ_SIZE_T>(-1);  // the end
+  if (got == 0) return static_cast<OPJ_SIZE_T>(-1);  // end of stream
   std::memcpy(to, memory->bytes.data() + memory->at, got);
   memory->at += got;
   return got;
@@ -48,7 +48,7 @@ using Stream = std::unique_ptr<opj_stream_t, decltype(&opj_stream_destroy)>;
 using Codec = std::unique_ptr<opj_codec_t, decltype(&opj_destroy_codec)>;
 using Decoded = std::unique_ptr<opj_image_t, decltype(&opj_image_destroy)>;
 
-/// A codestream begins with its marker, a file with the length of its first box.
+/// A codestream begins with a marker, a JP2 file with the length of its first box.
 OPJ_CODEC_FORMAT format_of(std::span<const std::byte> image) {
   return !image.empty() && image.front() == std::byte{0xFF} ? OPJ_CODEC_J2K : OPJ_CODEC_JP2;
 }
@@ -76,7 +76,7 @@ std::vector<std::int32_t> decode_jpeg2000(std::span<const std::byte> image, cons
     return decoded->numcomps == 1 && decoded->comps[0].w == unsigned(size[0]) &&
            decoded->comps[0].h == unsigned(size[1]);
   };
-  // Before memory is taken for what it says.
+  // Checked before memory is allocated according to the header.
   if (!fits()) throw std::runtime_error("its JPEG 2000 image has another size");
   if (opj_decode(codec.get(), stream.get(), decoded.get()) == OPJ_FALSE || !fits() ||
       decoded->comps[0].data == nullptr)

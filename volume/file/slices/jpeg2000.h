@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images in JPEG 2000 (ISO 15444-1), as DICOM files hold them. Decoded by OpenJPEG.
+// Decodes JPEG 2000 images (ISO 15444-1) in DICOM files, with OpenJPEG.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace understudy::volume {
 
-/// The samples of an image of one component and of `size`, x fastest. Throws std::runtime_error that says why
-/// it cannot be decoded.
+/// The samples of a single-component image of `size`, x fastest. Throws std::runtime_error with the reason if
+/// decoding fails.
 std::vector<std::int32_t> decode_jpeg2000(std::span<const std::byte> image, const std::array<int, 2>& size);
 
 }  // namespace understudy::volume

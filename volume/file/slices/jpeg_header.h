@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The markers that a JPEG image begins with (ITU T.81, annex B).
+// The first marker segments of a JPEG image (ITU T.81, annex B).
 #pragma once
 
 #include <cstddef>
@@ -8,16 +8,16 @@
 
 namespace understudy::volume {
 
-/// What a frame header says.
+/// The contents of a frame header.
 struct JpegFrame {
-  unsigned bits = 0;  ///< of a sample
+  unsigned bits = 0;  ///< per sample
   unsigned rows = 0;
   unsigned columns = 0;
   unsigned components = 0;
 };
 
-/// That of the first frame. None unless marker segments lead to it from the image's begin, each within `image`:
-/// DCMTK 3.6.7 looks for it in damaged images without end.
+/// The header of the first frame. Empty unless it follows the image's start through valid marker segments
+/// inside `image`: DCMTK 3.6.7 searches for it endlessly in damaged images.
 std::optional<JpegFrame> first_jpeg_frame(std::span<const std::byte> image);
 
 }  // namespace understudy::volume

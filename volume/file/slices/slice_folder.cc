@@ -34,7 +34,7 @@ using OpenFolder = std::unique_ptr<DIR, CloseFolder>;
   throw FileError(fmt::format("{}: {}", folder, what));
 }
 
-/// Null where `path` is no folder.
+/// Null if `path` is not a folder.
 OpenFolder open_folder(const std::string& path, const ReadableFiles& readable) {
   const int number = readable.open(path);
   DIR* const folder = ::fdopendir(number);
@@ -48,7 +48,7 @@ bool is_regular(DIR* folder, const dirent& entry) {
   return ::fstatat(::dirfd(folder), entry.d_name, &about, 0) == 0 && S_ISREG(about.st_mode);
 }
 
-/// By how much the one run of digits counts on in which two names differ; 0 where they differ otherwise.
+/// If two names differ in only one run of digits, the difference of these numbers; otherwise 0.
 long long counted_on(const std::string& before, const std::string& name) {
   const auto is_decimal = [](char c) { return c >= '0' && c <= '9'; };
   std::size_t i = 0, k = 0;

@@ -43,7 +43,7 @@ class VolumeOfSlices : public VolumeFile {
     return std::size_t(size[0]) * std::size_t(size[1]) * bytes_per_scalar(description().type);
   }
 
-  /// Those of one slice that lie in `box`.
+  /// Copies the rows of one slice that lie in `box`.
   void copy_rows(const TexelBox& box, std::span<const std::byte> slice, std::span<std::byte> to) const {
     const std::size_t scalar = bytes_per_scalar(description().type);
     const std::size_t row = std::size_t(box.high[0] - box.low[0]) * scalar;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A volume that is stored image by image, one for each slice.
+// A volume that is stored as one image per slice.
 #pragma once
 
 #include <cstddef>
@@ -17,15 +17,15 @@ class SliceImages {
  public:
   virtual ~SliceImages() = default;
 
-  /// The scalars of slice `z`, tightly packed, x fastest, in native byte order. Throws FileError.
+  /// Reads the scalars of slice `z`, tightly packed, x fastest, in native byte order. Throws FileError.
   virtual void read(int z, std::span<std::byte> scalars) = 0;
-  /// What has been read of all files so far, headers included.
+  /// Bytes read from all files so far, including headers.
   virtual std::uint64_t bytes_read() const = 0;
-  /// The memory that read() takes at most beside `scalars`.
+  /// The most memory that read() takes in addition to `scalars`.
   virtual std::size_t memory_to_read() const = 0;
 };
 
-/// Slices are decoded one at a time, and each of them whole. `path` is for messages.
+/// Slices are decoded one at a time, each as a whole. `path` is for messages.
 std::unique_ptr<VolumeFile> volume_of_slices(const FileDescription& description,
                                              std::unique_ptr<SliceImages> images, std::string path);
 

@@ -41,7 +41,7 @@ std::int64_t count_of(const Fields& fields, std::string_view name, const std::st
   return std::int64_t(count);
 }
 
-/// Lines "name=value", as ImageJ's FileSaver writes them; what is not there is 1.
+/// Parses lines "name=value", as written by ImageJ's FileSaver; missing counts are 1.
 TiffDescription from_imagej(const std::string& text, const std::string& path) {
   Fields fields;
   for (std::size_t at = 0; at < text.size();) {
@@ -55,7 +55,7 @@ TiffDescription from_imagej(const std::string& text, const std::string& path) {
   found.by_imagej = true;
   found.channels = count_of(fields, "channels", path);
   found.time_steps = count_of(fields, "frames", path);
-  // A stack that is no hyperstack says how many images it has, and nothing else.
+  // A stack that is not a hyperstack specifies only its number of images.
   const bool is_hyperstack =
       fields.contains("slices") || fields.contains("frames") || fields.contains("channels");
   found.slices = count_of(fields, is_hyperstack ? "slices" : "images", path);
@@ -66,10 +66,10 @@ TiffDescription from_imagej(const std::string& text, const std::string& path) {
   return found;
 }
 
-/// The attributes of the first element "Pixels", and of those that say which page holds which plane of it.
+/// The attributes of the first element "Pixels", and of its elements that assign planes to pages.
 struct OmePixels {
   bool there = false;
-  bool ended = false;  ///< what follows is of other images
+  bool ended = false;  ///< subsequent elements belong to other images
   bool out_of_memory = false;
   Fields fields;
   std::vector<Fields> pages;
@@ -84,7 +84,7 @@ OmePixels pixels_of(const std::string& text, const std::string& path) {
   XML_SetStartElementHandler(parser.get(), [](void* user, const char* name, const char** words) {
     auto* const pixels = static_cast<OmePixels*>(user);
     const std::string_view whole(name), element = whole.substr(whole.rfind(':') + 1);
-    try {  // no exception may pass through expat
+    try {  // no exception may propagate through expat
       Fields* to = nullptr;
       if (element == "Pixels" && !pixels->there) to = &pixels->fields;
       if (element == "TiffData" && pixels->there && !pixels->ended) to = &pixels->pages.emplace_back();
@@ -105,7 +105,7 @@ OmePixels pixels_of(const std::string& text, const std::string& path) {
   return found;
 }
 
-/// In metres; units that are not known are taken for micrometres, which is OME's own.
+/// In metres; unknown units are treated as micrometres, OME's default.
 double unit_of(const Fields& fields, const std::string& axis) {
   static const std::map<std::string, double> units{{"nm", 1e-9}, {"µm", 1e-6}, {"um", 1e-6},
                                                    {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}};
@@ -121,7 +121,7 @@ TiffDescription from_ome(const std::string& text, const std::string& path) {
   found.slices = count_of(fields, "SizeZ", path);
   found.time_steps = count_of(fields, "SizeT", path);
   found.channels = count_of(fields, "SizeC", path);
-  // "XYZCT" or another order of the last three, the fastest first.
+  // "XYZCT" or another order of the last three axes, fastest first.
   const auto told = fields.find("DimensionOrder");
   const std::string order = told == fields.end() ? "XYZCT" : told->second;
   std::int64_t stride = 1;

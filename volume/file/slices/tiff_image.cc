@@ -22,18 +22,18 @@ namespace understudy::volume {
 
 namespace {
 
-// What a damaged header may make libtiff ask for at once.
+// Limits single allocations by libtiff caused by a damaged header.
 constexpr tmsize_t most_memory = tmsize_t(1) << 30;
 constexpr std::size_t most_pages = std::size_t(1) << 20;
 
-/// The bytes of a file, as libtiff wants to read them, and what it says of them.
+/// A file as libtiff reads it, and libtiff's error message.
 struct Client {
   std::unique_ptr<ByteSource> file;
   std::uint64_t position = 0;
   std::string trouble;
 };
 
-// No exception may pass through libtiff.
+// No exception may propagate through libtiff.
 tmsize_t read_bytes(thandle_t handle, void* to, tmsize_t count) {
   auto* const client = static_cast<Client*>(handle);
   try {
@@ -114,7 +114,7 @@ std::optional<ScalarType> scalar_type(int format, int bits) {
   }
 }
 
-/// Of the page that is open.
+/// The properties of the current page.
 struct Page {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -140,7 +140,7 @@ Page page_of(TIFF* tiff, const std::string& path) {
           *type};
 }
 
-/// Microscopes write what other programs do not know of behind such a first page.
+/// Refuses dialects of microscopes, whose data after the first page other programs cannot find.
 void check_dialect(TIFF* tiff, const std::string& path) {
   constexpr std::uint32_t metamorph = 33629, zeiss = 34412;
   std::uint32_t count = 0;
@@ -209,7 +209,7 @@ class TiffFile::Pages {
     return fmt::format("{}; get the file again", client_.trouble.empty() ? otherwise : client_.trouble);
   }
 
-  /// Where each of them lies.
+  /// Finds the offset of each page.
   void find_pages(const TiffDescription& described) {
     do {
       if (is_thumbnail(tiff_.get())) continue;
@@ -229,7 +229,7 @@ class TiffFile::Pages {
     if (TIFFSetSubDirectory(tiff_.get(), places_.front()) != 1)
       fail_tiff(header_.path, trouble("its first page is damaged"));
     header_.type = first_.type;
-    // ImageJ writes stacks beyond 4 GB so: one page, and all others' pixels behind its own.
+    // ImageJ writes stacks beyond 4 GB as a single page, followed directly by the pixels of the others.
     std::uint64_t* offsets = nullptr;
     if (described.by_imagej && places_.size() == 1 && described.images() > 1 &&
         field<std::uint16_t>(tiff_.get(), TIFFTAG_COMPRESSION, COMPRESSION_NONE) == COMPRESSION_NONE &&
@@ -237,7 +237,7 @@ class TiffFile::Pages {
       contiguous_from_ = offsets[0];
   }
 
-  /// Which pages are slices, and which are time steps.
+  /// Assigns pages to slices and time steps.
   void arrange(const TiffDescription& described) {
     const std::int64_t pages = contiguous_from_ ? described.images() : std::int64_t(places_.size());
     if (described.slices > 0 && described.images() != pages)
@@ -247,7 +247,7 @@ class TiffFile::Pages {
                             described.images(), pages));
     header_.spacing = described.spacing;
     if (described.by_imagej) {
-      // Pixels to a unit of length, the same as that of the slices' distance.
+      // Resolution is in pixels per unit of length, the same unit as that of the slice distance.
       const float across = field<float>(tiff_.get(), TIFFTAG_XRESOLUTION, 1);
       const float down = field<float>(tiff_.get(), TIFFTAG_YRESOLUTION, 1);
       header_.spacing[0] = believable_spacing(1 / double(across));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One TIFF file of scalars: its pages are slices. Decoded by libtiff: strips and tiles, classic and BigTIFF, of
-// every compression that libtiff has. TIFF 6.0; ImageJ's and OME's descriptions of stacks
+// One TIFF file of scalars, whose pages are slices. libtiff decodes strips and tiles, classic and BigTIFF, with
+// all its compression schemes. TIFF 6.0; ImageJ's and OME's descriptions of stacks
 // (docs.openmicroscopy.org/ome-model).
 #pragma once
 
@@ -24,21 +24,21 @@ struct TiffHeader {
   int slices = 1;
   int time_steps = 1;
   int channels = 1;
-  Vec3 spacing{1, 1, 1};        ///< as ImageJ or OME tell it
+  Vec3 spacing{1, 1, 1};        ///< as specified by ImageJ or OME
   std::size_t piece_bytes = 0;  ///< of the largest strip or tile, decoded
 };
 
-/// By the first bytes. Throws FileError where the file cannot be read.
+/// By the first bytes. Throws FileError if the file cannot be read.
 bool is_tiff(const std::string& path, const ReadableFiles& files);
 
 class TiffFile {
  public:
-  /// Reads the header. Throws FileError for damaged files, and for images that are no scalars.
+  /// Reads the header. Throws FileError for damaged files, and for images that are not scalar.
   TiffFile(const std::string& path, const ReadableFiles& files);
   ~TiffFile();
 
   const TiffHeader& header() const;
-  /// Fills `scalars` with those of one slice, tightly packed, in native byte order. Throws FileError.
+  /// Fills `scalars` with one slice, tightly packed, in native byte order. Throws FileError.
   void read(int slice, int time_step, int channel, std::span<std::byte> scalars);
   std::uint64_t bytes_read() const;
 

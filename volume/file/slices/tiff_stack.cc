@@ -21,7 +21,7 @@ class PagesOfFile : public SliceImages {
 
   void read(int z, std::span<std::byte> scalars) override { file_->read(z, time_step_, channel_, scalars); }
   std::uint64_t bytes_read() const override { return file_->bytes_read(); }
-  /// A strip or tile as it is compressed, and decoded.
+  /// A strip or tile, compressed and decoded.
   std::size_t memory_to_read() const override { return 2 * file_->header().piece_bytes; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volumes in TIFF files: the pages of one, or the files of a folder with one slice each.
+// Volumes in TIFF files: the pages of one file, or the files of a folder with one slice each.
 #pragma once
 
 #include <memory>
@@ -11,11 +11,12 @@
 
 namespace understudy::volume {
 
-/// The pages of one file: of a time step and a channel. Throws FileError.
+/// Opens the pages of one file, at one time step and channel. Throws FileError.
 std::unique_ptr<VolumeFile> open_tiff(const std::string& path, const FileHints& hints,
                                       const ReadableFiles& readable = {});
 
-/// `files` of one page, size and type, in the order of slices. `folder` is for messages. Throws FileError.
+/// Opens `files` of one page each, with equal size and type, in slice order. `folder` is for messages. Throws
+/// FileError.
 std::unique_ptr<VolumeFile> open_tiff_stack(const std::string& folder, std::vector<std::string> files,
                                             const ReadableFiles& readable = {});
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// understudy-bench-balance: one scene under no balancing, Mueller's twice and the predicting one. Prints one
-// JSON object a line: for each balancer its sums, and its images.
+// understudy-bench-balance: renders one scene without balancing, with two settings of Mueller's
+// balancer, and with the predicting balancer. Prints one JSON object a line for each balancer: its sums,
+// and the figures of its images.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -41,7 +42,7 @@ struct Settings {
 const std::vector<std::string> scenes{"turning",  "slowed-surface", "slowed-volume", "slowed-lit",
                                       "switched", "zooming",        "changing"};
 
-/// Of volumes in files, all of one size: their texels, in bytes of the common range.
+/// Texels of the volumes in files, all of one size; the bytes are normalised to the range common to all files.
 struct Loaded {
   volume::VolumeDescription description;
   volume::Vec3 spacing{1, 1, 1};
@@ -88,7 +89,7 @@ bench::TraceScene scene_of(const Settings& settings) {
   const double step = 1, top = largest_value(*loaded);
   const volume::TransferFunction table =
       volume::sampled(volume::control_points_named(settings.table), 0, top, step);
-  // What the second table shows is what is densest.
+  // The second transfer function shows only the densest parts.
   volume::TransferControlPoints dense = volume::control_points_named("grey");
   dense.control_points = {{0, {1, 1, 1}, 0}, {0.7, {1, 1, 1}, 0}, {0.75, {1, 1, 1}, 0.3}, {1, {1, 1, 1}, 0.6}};
   const volume::TransferFunction second = volume::sampled(dense, 0, top, step);
@@ -157,8 +158,8 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     bench::TracePlayer player(scene_of(settings));
-    // No one setting of Mueller's suits every scene: one that turns back readily, and one that hardly ever
-    // does.
+    // No single setting of Mueller's balancer suits every scene: the default one reverses a move readily,
+    // the firm one hardly ever.
     compositor::MullerSettings firm;
     firm.raised_by = 10;
     std::vector<std::pair<const char*, std::unique_ptr<compositor::Balancer>>> balancers;

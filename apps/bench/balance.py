@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Four ranks that are balanced, image by image: not at all, after Mueller et al. 2006, and by prediction.
+"""Load balancing of four ranks, image by image: none, after Mueller et al. 2006, and by prediction.
 
-Every image is really cast, on every rank's own box; a rank's time is its samples times 2 ns times its relative cost, with 5 %
-of seeded noise and one time in a hundred that is three times as long, so figures do not depend on the machine or its load.
-Blocks travel at 1 GB/s, 50 us a move. `value` is the mean of an image's time, rendering on the slowest rank and what
-travelled before it; deviation is (max - min) / mean of the ranks' times. Of Mueller's two settings the better one in each
-scene has a row. Plots go to out/bench/balance/.
+Every image is really cast, box by box. The time of a rank is its number of samples times 2 ns times its relative cost, with
+5 % of seeded noise; one time in a hundred is tripled. So the figures do not depend on the machine or its load. Blocks are
+sent at 1 GB/s, with a latency of 50 us for each rebalancing. `value` is the mean time of an image: rendering on the slowest
+rank, plus the transfer of blocks before it. The deviation is (max - min) / mean of the ranks' times. Of the two settings of
+Mueller's balancer, the row shows the one that is faster in that scene. Plots go to out/bench/balance/.
 """
 
 import json
@@ -28,7 +28,7 @@ TITLES = {
 
 
 def volumes(case):
-    """Files of the case; none where they do not lie beside the checkout."""
+    """Returns the files of the case; an empty list if they are not beside the checkout."""
     if case == "sparse":
         return [path for path in [DATA / "aneurism_256x256x256_uint8.raw.gz"] if path.exists()]
     if case == "changing":
@@ -57,7 +57,7 @@ def rows():
             print(f"balance/{case}: left out, its volume does not lie in {DATA}")
             continue
         runs = played(case, files)
-        # Matplotlib is Debian's, whatever python this is.
+        # Use Debian's python, which has Matplotlib, whatever python runs this script.
         subprocess.run(["/usr/bin/python3", "-B", str(Path(__file__).with_name("balance_plot.py")), TITLES[case][2],
                         str(folder / f"{case}.png")], input=json.dumps(runs), text=True, check=True)
         for name in POLICIES:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""balance_plot.py TITLE PNG: the runs of one scene, which come as JSON, as a plot. (balance.py calls it.)"""
+"""balance_plot.py TITLE PNG: plots the runs of one scene, read as JSON from stdin. Called by balance.py."""
 
 import json
 import sys
@@ -25,7 +25,7 @@ def plot(runs, title, path):
     above.legend(fontsize=8, ncol=3, loc="upper right")
     below.set_ylabel("image, ms")
     below.set_xlabel("image")
-    # Single times that are three times as long would flatten the rest.
+    # Clip the single tripled times, which would flatten the rest of the plot.
     times = sorted(time for run in runs.values() for time in run["render_ms"])
     below.set_ylim(0, 1.15 * times[int(0.985 * len(times))])
     figure.savefig(path, dpi=72)

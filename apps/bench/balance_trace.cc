@@ -50,7 +50,7 @@ int direction(int from, int to) {
 
 }  // namespace
 
-/// The bricks of boxes that were drawn of late, with what draws them.
+/// The bricks of the boxes that were drawn most recently, each with its ray caster.
 class TracePlayer::Stores {
  public:
   struct Entry {
@@ -136,12 +136,12 @@ double TracePlayer::measured_ms(int frame, int rank, std::uint64_t samples) cons
   return ms * (1 + scene_.noise * (2 * unit - 1)) * (interrupted && scene_.noise > 0 ? 3 : 1);
 }
 
-/// What the ranks have, and have learned, from image to image.
+/// The state of the ranks that is carried from image to image.
 struct TracePlayer::Group {
   Partition partition;
   std::vector<RankWork> work;
   std::vector<BlockCache> caches;
-  std::vector<int> last_direction;  ///< of each plane
+  std::vector<int> last_direction;  ///< last direction in which each split plane moved
   double ms_per_block = 0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run of images on several ranks under a balancer, played on one machine: the images are really cast,
-// rank by rank, and the samples that each rank takes are counted. A rank's time is its samples times its
-// relative cost, and scatters by seeded noise; so a trace is the same on every machine, however loaded.
+// Simulates a sequence of images on several load-balanced ranks on one machine. The images are really cast,
+// rank by rank, and the samples of each rank are counted. A rank's time is its number of samples times its
+// relative cost, plus seeded noise; so a trace is the same on every machine, whatever its load.
 #pragma once
 
 #include <cstddef>
@@ -19,57 +19,57 @@
 
 namespace understudy::bench {
 
-/// What is played: all functions of the image's number alone.
+/// The simulated scene; each function depends on its arguments alone.
 struct TraceScene {
   volume::VolumeDescription description;
   int images = 0;
   int ranks = 4;
-  /// The stored texels. They may change with every image; `version` of the request then does, too.
+  /// The stored texels of a version. If they change with an image, so does `version` in that image's request.
   std::function<std::vector<std::byte>(std::uint64_t version)> texels;
   std::function<volume::RenderRequest(int image)> request;
   std::function<double(int image, int rank)> relative_cost = [](int, int) { return 1; };
-  /// From these images on something is different: the first one, always, is 0.
+  /// Numbers of the images at which the scene changes; the first one is always 0.
   std::vector<int> events{0};
 
   double ns_per_sample = 2;
-  double gigabytes_per_second = 1;  ///< of a rank's line, either way
+  double gigabytes_per_second = 1;  ///< bandwidth of a rank's network connection, in each direction
   double transfer_latency_ms = 0.05;
-  std::size_t cache_bytes = std::size_t(64) << 20;  ///< of blocks that were given away, on each rank
-  double noise = 0.05;  ///< times are between so much less and more; one in a hundred is three times as long
+  std::size_t cache_bytes = std::size_t(64) << 20;  ///< for the blocks that a rank has sent away, on each rank
+  double noise = 0.05;  ///< relative amplitude; in addition, one time in a hundred is tripled
   unsigned seed = 1;
 };
 
 struct TraceImage {
-  double render_ms = 0;    ///< slowest rank, with noise
-  double transfer_ms = 0;  ///< before it: busiest rank
-  double ideal_ms = 0;     ///< had all samples been divided by the ranks' speeds, without noise
+  double render_ms = 0;    ///< time of the slowest rank, with noise
+  double transfer_ms = 0;  ///< transfer of blocks before rendering, on the busiest rank
+  double ideal_ms = 0;     ///< if all samples were divided in proportion to the ranks' speeds, without noise
   double deviation = 0;    ///< (max - min) / mean of the ranks' times, without noise
-  double imbalance = 0;    ///< slowest rank's time over the ideal one, without noise
-  std::size_t bytes = 0;   ///< that travelled
+  double imbalance = 0;    ///< the slowest rank's time divided by the ideal one, without noise
+  std::size_t bytes = 0;   ///< sent between ranks
   std::size_t blocks_from_cache = 0;
   int planes_moved = 0;
-  int reversals = 0;  ///< of these, planes that moved the other way last time
+  int reversals = 0;  ///< planes that moved in the opposite direction to their last move
   std::vector<int> cuts;
 };
 
 struct TraceSums {
-  double mean_ms = 0;  ///< rendering on the slowest rank, and transfer
+  double mean_ms = 0;  ///< rendering on the slowest rank, plus transfer
   double ideal_ms = 0;
   double mean_deviation = 0;
   double bytes = 0;
   int planes_moved = 0;
   int reversals = 0;
-  /// Images after each event until the slowest rank's time stays within a tenth of what it is at the end of
-  /// that stretch, the mean over events.
+  /// Number of images after an event until the slowest rank's imbalance stays within 10 % of its level at the
+  /// end of the interval between events; the mean over all events.
   double settling = 0;
-  double end_deviation = 0;  ///< over the last tenth of each stretch between events
+  double end_deviation = 0;  ///< mean over the last tenth of each interval between events
 };
 
 class TracePlayer {
  public:
   explicit TracePlayer(TraceScene scene);
 
-  /// From a partition by blocks. None: it stays.
+  /// Plays all images, starting from a partition by blocks. A null balancer keeps that partition.
   std::vector<TraceImage> play(compositor::Balancer* balancer);
   TraceSums sums(const std::vector<TraceImage>& trace) const;
   const TraceScene& scene() const { return scene_; }
@@ -78,7 +78,7 @@ class TracePlayer {
   struct Version {
     std::uint64_t number = 0;
     std::vector<std::byte> texels;
-    std::vector<std::size_t> packed;  ///< bytes of every block as it travels, x fastest
+    std::vector<std::size_t> packed;  ///< size of each block when sent, in bytes; x fastest
   };
 
   struct Group;

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""./run bench [NAME…]: runs benchmarks, prints their rows, writes out/bench/NAME.json.
+"""./run bench [NAME…]: runs benchmarks, prints their rows, and writes out/bench/NAME.json.
 
-A row: name, value and unit, always; ratio_to (another row's name), ratio = value / its value and difference = value -
-its value; rms (error against that row's image), where they apply. Other fields are explained by each benchmark.
+Every row has name, value and unit. Where they apply, it also has ratio_to (the name of another row), ratio (value / that
+row's value), difference (value - that row's value), and rms (error against that row's image). Each benchmark explains its
+other fields.
 """
 
 import json
@@ -40,7 +41,7 @@ INSTRUCTION_SETS = [("avx512f", "AVX-512"), ("avx2", "AVX2"), ("sse4_1", "SSE4")
 
 
 def processor():
-    """Model name and flags, from /proc/cpuinfo."""
+    """Returns the model name and the flags, from /proc/cpuinfo."""
     text = Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace")
     model = re.search(r"^model name\s*:\s*(.*)$", text, re.MULTILINE)
     flags = re.search(r"^(?:flags|Features)\s*:\s*(.*)$", text, re.MULTILINE)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// understudy-bench-messages: what messages, bytes and pixels cost between the ranks of this MPI job, as one
-// JSON object. mpirun starts it.
+// understudy-bench-messages: measures the costs of messages, bytes and pixels between the ranks of this MPI
+// job, and prints them as one JSON object. Started by mpirun.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ double shortest(const Work& work) {
   return least;
 }
 
-/// As a box is seen: two thirds of each row in the middle.
+/// The middle two thirds of each row are covered, as in the image of a box.
 volume::Image some_image() {
   constexpr int edge = 384, from = edge / 6, to = edge - from;
   volume::Image image({0, 0, edge, edge});

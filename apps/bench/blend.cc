@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// understudy-bench-blend: how fast one core blends pixels, in the caches and from memory, beside copying as
-// many bytes. All ways take turns in every round; time is processor time, so that other work beside it counts
-// for little. Prints one JSON object a line.
+// understudy-bench-blend: measures how fast one core blends pixels, in the caches and from memory, beside
+// copying as many bytes. All methods alternate within each round. Times are processor times, so that other load
+// on the machine matters little. Prints one JSON object a line.
 #include "compositor/blend.h"
 
 #include <fmt/format.h>
@@ -34,7 +34,7 @@ double processor_seconds() {
   return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
-/// Smooth over some pixels, as images are; no pixel untouched.
+/// Values vary smoothly from pixel to pixel, as in real images; no pixel is clear.
 Image smooth_image(int side, unsigned seed) {
   Image image({0, 0, side, side});
   std::mt19937 random(seed);
@@ -50,7 +50,7 @@ Image smooth_image(int side, unsigned seed) {
 
 struct Way {
   std::string name;
-  std::size_t bytes_per_pixel;  ///< read and written
+  std::size_t bytes_per_pixel;  ///< sum of the bytes read and written
   std::function<void()> once;
   std::vector<double> seconds{};
 };
@@ -87,7 +87,7 @@ void measure(const char* place, int side, int rounds) {
     ways.push_back({fmt::format("encode, {}", name), 16 + packed,
                     [&, layout] { encode_pixels(back, back.rect, Operator::over, layout, true); }});
   }
-  // About as long for each turn in either place.
+  // The number of repetitions makes a turn take about as long in either place.
   const int times = std::max(1, (1 << 21) / (side * side));
   for (int round = 0; round < rounds; ++round)
     for (std::size_t i = 0; i < ways.size(); ++i) {

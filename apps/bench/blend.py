@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How fast one core blends pixels, beside how fast it copies them, in turn.
+"""How fast one core blends pixels, beside how fast it copies them, measured alternately.
 
-Rows are PLACE/WAY (1e9 pixels a second) and PLACE/WAY/bytes (GB a second that are read and written, with the ratio to
-copying). In the cache means images of 128^2 float RGBA pixels, from memory of 2048^2. A way named after a message blends
-straight from what has travelled, or encodes it.
+Rows are PLACE/WAY (1e9 pixels a second) and PLACE/WAY/bytes (GB a second read and written, with the ratio to copying). PLACE
+`cache` means images of 128^2 float RGBA pixels, `memory` images of 2048^2. A WAY named after a message blends directly from
+the received message, or encodes the image into it.
 """
 
 import json

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What single OpenGL calls cost, measured from the application's side. calls.py runs this program bare and
-// under Understudy; it knows nothing of either.
+// Measures the cost of single OpenGL calls from the application's side. calls.py runs this program both bare
+// and under Understudy; the program itself is independent of Understudy.
 #define GL_GLEXT_PROTOTYPES
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -20,7 +20,7 @@ constexpr int width = 64;
   std::exit(1);
 }
 
-/// A current compatibility context with a small framebuffer, without a window.
+/// Makes current a compatibility context with a small framebuffer, without a window.
 void open_context() {
   const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   if (eglInitialize(display, nullptr, nullptr) == EGL_FALSE || eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) {
@@ -36,7 +36,7 @@ void open_context() {
   if (count == 0 || eglMakeCurrent(display, surface, surface, context) == EGL_FALSE) fail("no OpenGL context");
 }
 
-/// Nothing of a triangle is drawn, so that calls are measured and not pixels.
+/// Culls every triangle, so that the time of the calls is measured, not that of pixels.
 void draw_no_pixels() {
   glEnable(GL_CULL_FACE);
   glCullFace(GL_FRONT_AND_BACK);
@@ -54,7 +54,7 @@ GLuint use_program_with_uniform() {
   return program;
 }
 
-/// Mesa gathers vertices until the end of a primitive; its end is outside the time.
+/// Mesa buffers vertices until glEnd; glEnd is excluded from the time.
 void vertex(benchmark::State& state) {
   float x = 0;
   glBegin(GL_POINTS);
@@ -89,7 +89,7 @@ void point_size(benchmark::State& state) {
   for (auto _ : state) glPointSize(size = 3 - size);  // NOLINT(clang-analyzer-deadcode.DeadStores)
 }
 
-// Calls that the track unit takes notice of, with next to no work for the driver.
+// Calls that the track unit evaluates, with almost no work for the driver.
 
 void empty_upload(benchmark::State& state) {
   glBindTexture(GL_TEXTURE_2D, 1);
@@ -130,7 +130,7 @@ void draw_arrays(benchmark::State& state) {
   glDisableClientState(GL_VERTEX_ARRAY);
 }
 
-/// 5,000 calls, as programs draw molecules that know no arrays.
+/// 5,000 calls, as made by programs that draw molecules without vertex arrays.
 void immediate_frame(benchmark::State& state) {
   for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     glClear(GL_COLOR_BUFFER_BIT);
@@ -148,7 +148,7 @@ void immediate_frame(benchmark::State& state) {
 
 constexpr int sprites = 32;
 
-/// 2-D textures, all of one size or each of another.
+/// Makes 2-D textures, either all of one size or each of a different size.
 void make_sprites(GLuint (&textures)[sprites], bool alike) {
   glGenTextures(sprites, textures);
   for (int i = 0; i < sprites; ++i) {
@@ -158,14 +158,14 @@ void make_sprites(GLuint (&textures)[sprites], bool alike) {
   }
 }
 
-/// 400 blended quads, four from each texture before the next is bound, as programs draw icons and map tiles.
-/// Every other quad by glBegin, the others from an array. What Understudy has learnt of the program after some
-/// hundreds of frames is not part of the time.
+/// Draws 400 blended quads, four from each texture before the next is bound, as programs draw icons and map
+/// tiles. Every other quad uses glBegin, the others an array. The warm-up of some hundreds of frames, after
+/// which Understudy has classified the program's draws, is not timed.
 void sprite_frame(benchmark::State& state, bool alike) {
   static const GLfloat corners[] = {0, 0, 0.1F, 0, 0.1F, 0.1F, 0, 0.1F};
   GLuint textures[sprites];
   make_sprites(textures, alike);
-  // Seen, unlike culled ones, but hardly a pixel.
+  // These quads are visible, unlike the culled triangles, but cover hardly a pixel.
   glDisable(GL_CULL_FACE);
   glViewport(0, 0, 1, 1);
   glEnable(GL_TEXTURE_2D);
@@ -218,7 +218,7 @@ BENCHMARK(get_viewport)->Name("glGetIntegerv");
 BENCHMARK(draw_arrays)->Name("glDrawArrays");
 BENCHMARK(immediate_frame)->Name("immediate frame");
 BENCHMARK_CAPTURE(sprite_frame, different, false)->Name("textured quads");
-// The last one: what it draws looks like a volume for a while.
+// This one must run last: for a while, its draws look like those of a volume.
 BENCHMARK_CAPTURE(sprite_frame, alike, true)->Name("textured quads, one size");
 
 int main(int argc, char** argv) {

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a call costs more under Understudy: bare, through the entry library alone, with track, with units that
-pass, and with track answering queries itself.
+"""The cost that Understudy adds to a call: bare, through the entry library alone, with track, with units that only pass calls
+on, and with track answering queries itself.
 
-The program understudy-bench-calls measures single calls and a frame of 5,000 calls with Google Benchmark; glxgears
-counts its frames. All ways are run one after the other in every round, and a value is the median over the rounds.
+The program understudy-bench-calls measures single calls and a frame of 5,000 calls with Google Benchmark; glxgears counts its
+frames. In each round all ways run one after the other; a value is the median over the rounds.
 """
 
 import json
@@ -25,7 +25,7 @@ WAYS = {
     "answers": "track(answer=on) driver",
 }
 ROUNDS = 5
-SECONDS = 0.2  # for each call in each round
+SECONDS = 0.2  # minimum time for each call in each round
 GEARS_SECONDS = 40
 
 
@@ -34,7 +34,7 @@ def prefix(way):
 
 
 def call_times(way):
-    """Nanoseconds of each benchmark of the program, on the processor: others may be at work beside it."""
+    """Returns the nanoseconds of each benchmark, as processor time, because other processes may be running."""
     text = subprocess.run(
         [*prefix(way), str(viewers.PROGRAMS / "understudy-bench-calls"), "--benchmark_format=json",
          f"--benchmark_min_time={SECONDS}"],
@@ -44,7 +44,9 @@ def call_times(way):
 
 
 def gears_frame_ms(way, display):
-    """glxgears says every five seconds how many frames it drew; the first line counts its start, the second does."""
+    """Returns the frame time of glxgears, which reports its frames every five seconds. The first line includes its
+    start-up, so the second one counts.
+    """
     gears = subprocess.Popen([*prefix(way), "glxgears"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
                              env={**os.environ, **viewers.SOFTWARE, "DISPLAY": display, "vblank_mode": "0"})
     try:

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// understudy-bench-encryption: what encryption costs a connection over TCP between two threads of this program.
-// Noise, which no codec shortens, goes from one to the other, with and without in turns. Prints one JSON object
-// for each turn: nanoseconds of processor time a byte at both ends, and bytes a second on the line as it is.
+// understudy-bench-encryption: measures the cost of encryption on a TCP connection between two threads of
+// this program. Incompressible noise is sent from one to the other, with and without encryption in turns.
+// Prints one JSON object for each turn: nanoseconds of processor time per byte at both ends, and the bytes
+// per second of the connection.
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/socket.h>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// understudy-bench-exchange: partial images become one image on rank 0, by each of our exchanges and, where
-// it was found when this was built, by IceT. One rank of an MPI job. All ways get the same images in turn; time
-// is that of the slowest rank, from a barrier until it is done. Rank 0 prints one JSON object a line.
+// understudy-bench-exchange: composites partial images into one image on rank 0, with each of our
+// exchanges and, if the build found it, with IceT. Runs as one rank of an MPI job. All methods get the
+// same images in turn; the time is that of the slowest rank, from a barrier to completion. Rank 0
+// prints one JSON object a line.
 #include "compositor/exchange/exchange.h"
 
 #include <fmt/format.h>
@@ -41,22 +42,21 @@ struct Settings {
   int side = 256;
   std::vector<int> pixels{512, 1024};
   int rounds = 15;
-  std::vector<std::string> only;  ///< ways; none: all
+  std::vector<std::string> only;  ///< names of the ways to time; empty: all
 };
 
-/// One way from partial images to an image. Both functions are called by all ranks; what is prepared is not
-/// timed.
+/// One compositing method. All ranks call both functions; the time of prepare() is not measured.
 struct Way {
   std::string name;
   std::function<void(const Image& mine)> prepare;
   std::function<void()> compose;
-  std::function<ImageView()> image;  ///< on rank 0, of the last compose()
+  std::function<ImageView()> image;  ///< result of the last compose(), on rank 0
   std::vector<double> seconds{};
-  bench::Sent sent{};  ///< by all ranks, once
-  double error = 0;    ///< of the last image, the largest of all components
+  bench::Sent sent{};  ///< by all ranks, in one compose()
+  double error = 0;    ///< largest error of any component in the last image
 };
 
-/// Front to back in double precision.
+/// Composites all images front to back, in double precision.
 std::vector<double> product_of(const std::vector<Image>& images, std::span<const int> order, int pixels) {
   std::vector<double> product(4 * std::size_t(pixels) * std::size_t(pixels), 0.0);
   for (const int rank : order) {
@@ -72,7 +72,7 @@ std::vector<double> product_of(const std::vector<Image>& images, std::span<const
   return product;
 }
 
-/// What lies outside of the image counts as clear.
+/// Pixels outside of the image count as clear.
 double largest_error(const ImageView& image, std::span<const double> product, int pixels) {
   double largest = 0;
   for (int y = 0; y < pixels; ++y)
@@ -91,7 +91,7 @@ double largest_error(const ImageView& image, std::span<const double> product, in
   return largest;
 }
 
-/// All images on rank 0; elsewhere nothing.
+/// Returns the images of all ranks on rank 0, and an empty vector elsewhere.
 std::vector<Image> gathered(const Image& mine, std::span<const Rect> footprints, Communicator& communicator) {
   std::vector<Image> images;
   if (communicator.rank() != 0) {
@@ -115,7 +115,7 @@ std::vector<Rect> footprints_of(Rect mine, Communicator& communicator) {
   return footprints;
 }
 
-/// The ranks as they are on machines of their own: nothing is read in place.
+/// Makes the ranks communicate as if each had its own machine: no message is read in place.
 class Apart final : public Communicator {
  public:
   explicit Apart(Communicator& communicator) : communicator_(communicator) {}
@@ -147,14 +147,14 @@ class Apart final : public Communicator {
   [[noreturn]] void abandon(const std::string& why) override {
     communicator_.abandon(why);
     throw compositor::RankLost(
-        why);  // never reached; gcc does not believe a virtual function that it will not return
+        why);  // never reached, but gcc does not rely on [[noreturn]] of a virtual function
   }
 
  private:
   Communicator& communicator_;
 };
 
-/// Our exchanges, as a node calls them: the footprints are agreed upon first.
+/// Our exchanges, called as a node calls them: the ranks first agree on the footprints.
 class Ours {
  public:
   Ours(Communicator& communicator, compositor::MessageCost cost) : communicator_(communicator), cost_(cost) {}
@@ -195,7 +195,7 @@ bench::Sent by_all(const bench::Sent& mine) {
 }
 
 void measure(std::vector<Way>& ways, const Image& mine, int rounds) {
-  // In the first two rounds libraries make their buffers.
+  // In the first two rounds, libraries allocate their buffers.
   constexpr int settle = 2;
   for (int round = 0; round < settle + rounds; ++round)
     for (std::size_t i = 0; i < ways.size(); ++i) {
@@ -224,7 +224,7 @@ std::vector<std::byte> read(const std::string& file, std::size_t count) {
   return bytes;
 }
 
-/// Every exchange, and the one that costs least by the estimate.
+/// Every exchange, and the one with the lowest estimated cost ("auto").
 std::vector<Way> our_ways(Ours& apart, Ours& on_one_machine, const bench::PartialImage& mine) {
   using compositor::Layout;
   std::vector<Way> ways;
@@ -233,7 +233,7 @@ std::vector<Way> our_ways(Ours& apart, Ours& on_one_machine, const bench::Partia
                              Layout::rgba32f, mine.order));
   ways.push_back(apart.way("auto", {}, Layout::rgba32f, mine.order));
   ways.push_back(apart.way("auto, unpacked", {}, Layout::rgba32f, mine.order, false));
-  // As nodes do it where all ranks are on one machine.
+  // As on nodes whose ranks are all on one machine.
   for (std::size_t a = 0; a < compositor::algorithm_count; ++a)
     ways.push_back(on_one_machine.way(fmt::format("{}, in place", name_of(compositor::Algorithm(a))),
                                       compositor::Algorithm(a), Layout::rgba32f, mine.order, false));

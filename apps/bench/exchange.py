@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exchanges of partial images on 2, 4 and 8 MPI ranks of this machine, beside IceT's on the same images in turn.
+"""Exchanges of partial images on 2, 4 and 8 MPI ranks of this machine, beside IceT's on the same images, alternately.
 
-Rows are RANKS/SCENE/WAY/time (ms, the slowest rank's, median over rounds), /bytes (MB that all ranks send, counted in MPI
-below both libraries) and /messages. Scenes are full (every pixel touched on every rank), sparse (boxes of the kd-tree,
-mostly clear) and noise (full, of random numbers), on 1024^2 pixels, or 512^2 where the name says so. `icet` is the best
-of IceT's strategies, for each row by itself; its name stands beside. max is the largest error of any component against
-the product in double precision.
+Rows are RANKS/SCENE/WAY/time (ms of the slowest rank, median over rounds), /bytes (MB that all ranks send, counted in MPI
+below both libraries) and /messages. Scenes are full (every pixel touched on every rank), sparse (boxes of the kd-tree, mostly
+clear) and noise (like full, of random numbers), on 1024^2 pixels, or on 512^2 where the name says so. `icet` is the best of
+IceT's strategies, chosen separately for each row, which names it. max is the largest error of any component against the
+product in double precision.
 """
 
 import json
@@ -26,7 +26,7 @@ WITHOUT_ICET = """exchange: no rows for IceT; to have them (70 MB to fetch, noth
 
 
 def measured(ranks):
-    """What the program prints, on so many ranks: started as the launcher starts nodes."""
+    """Runs the program on this number of ranks, started as the launcher starts nodes; returns what it prints."""
     environment = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     text = subprocess.run(["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", "--mca",
                            "mpi_yield_when_idle", "1", "--mca", "plm", "isolated", "--mca", "btl", "self,vader",
@@ -38,7 +38,7 @@ def measured(ranks):
 
 
 def rows_of(group, found):
-    """Rows of one scene: `found` is what the program prints, in the order of its ways."""
+    """Returns the rows of one scene; `found` is what the program printed, in the order of its ways."""
     measures = {"time": ("ms", "ms", 1), "bytes": ("bytes", "MB", 1e6), "messages": ("messages", "messages", 1)}
     ours = [one for one in found if not one["way"].startswith("icet/")]
     theirs = [one for one in found if one["way"].startswith("icet/")]
@@ -54,7 +54,7 @@ def rows_of(group, found):
             if best is not None and best[key] > 0:
                 row |= {"ratio_to": name, "ratio": one[key] / best[key]}
             result.append(row)
-    # All of IceT's, for whoever wants to know what was chosen from.
+    # Also list all of IceT's strategies, so that readers can check the choice.
     result += [{"name": f"{group}/{one['way']}/time", "value": one["ms"], "unit": "ms", "bytes": one["bytes"],
                 "messages": one["messages"], "max": one["error"]} for one in theirs]
     return result

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frame time of the bundled viewer: bare, with Understudy inside it, and with 2 and 4 ranks.
 
-256^3 voxels on 512^2 pixels, the three modes of the viewer. The ways are alternated within each round; a value is the
-median over all rounds. The error is that of the last frame against the bare viewer's, which is blended in 8 bits.
+256^3 voxels on 512^2 pixels, in three modes of the viewer. The ways alternate within each round; a value is the median over
+all rounds. The error compares the last frame with the bare viewer's, which is blended in 8 bits.
 """
 
 import statistics
@@ -14,13 +14,13 @@ WAYS = {"bare": None, "embedded": [], "2 ranks": ["-n", "2"], "4 ranks": ["-n", 
 MODES = ["rgba", "table", "core"]
 ROUNDS = 3
 FRAMES = 10
-SETTLE = 4  # frames in which shaders compile, the volume travels and its first frame is verified
-ORBIT = 4  # degrees a frame
+SETTLE = 4  # first frames, in which shaders are compiled, the volume is sent and its first frame is verified
+ORBIT = 4  # degrees per frame
 SIDE = 256
 
 
 def cube():
-    """The engine's slices repeated until it is as deep as wide: 256^3 bytes of real structure."""
+    """Resamples the engine's slices to a cube by repeating them: 256^3 bytes of real structure."""
     path = viewers.OUT / "data" / f"engine.{SIDE}x{SIDE}x{SIDE}"
     engine = viewers.engine_volume().read_bytes()
     slice_bytes = SIDE * SIDE

@@ -46,7 +46,7 @@ RankPart cast_part(const volume::VolumeDescription& volume, std::span<const std:
   return part;
 }
 
-/// The smallest rectangle with all touched pixels.
+/// Crops the mask to the smallest rectangle that contains all touched pixels.
 PixelMask cropped(const PixelMask& mask) {
   Rect kept;
   const Rect& rect = mask.rect;
@@ -108,7 +108,7 @@ FrameParts cast_parts(const volume::VolumeDescription& volume, std::span<const s
 FrameParts parts_of_rays(const volume::VolumeDescription& volume, const volume::RenderRequest& request,
                          const volume::KdTree& tree) {
   FrameParts parts{tree.visibility_order(request), {}};
-  // Rays want to know the lattice alone.
+  // Ray setup needs only the lattice, so the store stays empty.
   const TexelBox lattice = volume::cell_lattice(volume).box();
   const BrickStore store(volume, {lattice.low, lattice.low});
   parts.ranks.resize(std::size_t(tree.ranks()));

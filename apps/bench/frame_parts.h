@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one image asks of each rank: which pixels its box of the volume reaches, with how many samples. Cast
-// as a node would cast it, or told from the rays alone.
+// The work of each rank for one image: the pixels that its box of the volume covers, and the number of samples.
+// Either cast as on a node, or derived from the rays alone.
 #pragma once
 
 #include <cstddef>
@@ -23,9 +23,9 @@ struct RenderRequest;
 namespace understudy::bench {
 
 struct RankPart {
-  compositor::PixelMask mask;  ///< over what shows of its image
+  compositor::PixelMask mask;  ///< over the visible part of the rank's image
   volume::Rect cast;           ///< pixels whose rays are set up
-  std::uint64_t samples = 0;   ///< that are taken
+  std::uint64_t samples = 0;   ///< samples that are taken
 };
 
 struct FrameParts {
@@ -35,17 +35,17 @@ struct FrameParts {
   std::uint64_t samples() const;
 };
 
-/// Casts each rank's box by itself, as RankRenderer does. `texels` are all that the volume stores.
+/// Casts each rank's box separately, as RankRenderer does. `texels` are all stored texels of the volume.
 FrameParts cast_parts(const volume::VolumeDescription& volume, std::span<const std::byte> texels,
                       const volume::RenderRequest& request, const volume::KdTree& tree);
 
-/// As if every sample of a ray were taken and showed something: no brick is empty, and there is no early ray
-/// termination. The rays are the nodes' own (volume/raycast/ray_setup.h), for samples on planes or steps; the
-/// volume needs no texels, and may be larger than any memory.
+/// Computes the parts as if every sample of a ray were taken and visible: no brick is empty, and there is no
+/// early ray termination. The rays are the nodes' own (volume/raycast/ray_setup.h), with samples on planes or
+/// steps. The volume needs no texels, and may exceed any memory.
 FrameParts parts_of_rays(const volume::VolumeDescription& volume, const volume::RenderRequest& request,
                          const volume::KdTree& tree);
 
-/// What the nodes send for this image, to the byte.
+/// Counts exactly what the nodes send for this image, to the byte.
 compositor::CountedExchange counted(const FrameParts& parts, compositor::Algorithm algorithm,
                                     compositor::Gather gather, volume::Operator op, compositor::Layout layout);
 

@@ -15,11 +15,11 @@ using compositor::RankTraffic;
 
 namespace {
 
-/// Until the last of jobs that begin together has ended, on cores that they share evenly; each runs on
-/// `threads` cores at most.
+/// Returns the time until the last of several jobs ends. All start together and share the cores evenly; each
+/// runs on at most `threads` cores.
 double shared_time(std::vector<double> jobs, int cores, int threads) {
   std::ranges::sort(jobs);
-  double now = 0, done = 0;  // of every job that still runs
+  double now = 0, done = 0;  // `done`: work done by each job that is still running
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const double speed = std::min(double(threads), double(cores) / double(jobs.size() - i));
     now += (jobs[i] - done) / speed;
@@ -28,12 +28,12 @@ double shared_time(std::vector<double> jobs, int cores, int threads) {
   return now;
 }
 
-/// The processors: a rank's own, or a few for all ranks.
+/// The processors: one for each rank, or a few shared by all ranks.
 class Cores {
  public:
   Cores(std::size_t ranks, int shared) : shared_(shared > 0), free_(shared_ ? std::size_t(shared) : ranks) {}
 
-  /// When the work ends that `rank` could begin at `ready`.
+  /// Returns when a piece of work of `rank` ends that could begin at `ready`.
   double work(std::size_t rank, double ready, double seconds) {
     double& core = shared_ ? *std::ranges::min_element(free_) : free_[rank];
     core = std::max(core, ready) + seconds;
@@ -45,7 +45,7 @@ class Cores {
   std::vector<double> free_;
 };
 
-/// Ranks in the order in which they are ready.
+/// Returns the ranks in the order in which they become ready.
 std::vector<std::size_t> by_time(const std::vector<double>& ready) {
   std::vector<std::size_t> order(ready.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
@@ -57,7 +57,8 @@ class Clock {
  public:
   Clock(std::size_t ranks, const Costs& costs) : costs_(costs), ready_(ranks), cores_(ranks, costs.cores) {}
 
-  /// Packs all messages, sends and receives them, then blends, as Player::play() does.
+  /// Advances the clock by one round: ranks pack all messages, send and receive them, then
+  /// blend, as Player::play() does.
   void play(const CountedRound& round) {
     const std::size_t ranks = ready_.size();
     std::vector<double> sent = ready_;

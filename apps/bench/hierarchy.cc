@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// understudy-bench-hierarchy: how fast hierarchical volumes are made and read, on one core and on all, and how
-// small they are beside Zstandard's own frames of the same scalars. Prints one JSON object for each turn.
+// understudy-bench-hierarchy: measures how fast hierarchical volumes are written and read, on one core
+// and on all, and their size compared with Zstandard's own compression of the same scalars. Prints one
+// JSON object for each turn.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
@@ -22,7 +23,7 @@ namespace {
 using namespace understudy::volume;
 using Clock = std::chrono::steady_clock;
 
-/// What is read of it in one go, as the nodes do.
+/// Bytes that are read at once, as on the nodes.
 constexpr std::size_t part_bytes = std::size_t(16) << 20;
 
 double seconds_since(Clock::time_point start) {
@@ -36,7 +37,7 @@ std::vector<std::byte> all_scalars(VolumeFile& volume) {
   return scalars;
 }
 
-/// Slices from the first to the last; returns the seconds.
+/// Reads all slices in order; returns the seconds that this takes.
 double time_to_read(const std::string& path) {
   const auto start = Clock::now();
   const auto volume = open_volume(path);
@@ -74,7 +75,7 @@ int main(int argc, char** argv) try {
                "also measure the size of the scalars when compressed by Zstandard at levels 3 and 19");
   CLI11_PARSE(app, argc, argv);
 
-  // From memory: what is timed reads no compressed original.
+  // Write the scalars to an uncompressed file first, so that reading a compressed original is not timed.
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / fmt::format("understudy-bench-hierarchy-{}", ::getpid());
   std::filesystem::create_directory(folder);

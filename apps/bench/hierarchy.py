@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How fast hierarchical volumes are made and read, on one core and on all in turn, and how small they are.
+"""How fast hierarchical volumes are written and read, on one core and on all in turn, and how small they are.
 
 Rows are VOLUME/build/CORES and VOLUME/read/CORES (MB of the volume's scalars a second, with the ratio to one core), and
-VOLUME/size/KIND (of 1: the part of the scalars' bytes that the file takes, with the ratio to Zstandard's level 19). Kind
-is `lossless`, or `1/255`: no value is farther off than that part of the range.
+VOLUME/size/KIND (size of the file as a fraction of the scalars' bytes, with the ratio to Zstandard at level 19). KIND is
+`lossless`, or `1/255`: the error of every value is at most that fraction of the range.
 """
 
 import json
@@ -13,7 +13,7 @@ import subprocess
 import viewers
 
 SHARED = viewers.ROOT.parent / "shared" / "data"
-# Name, file, and the range of its values.
+# Name, file, and the range of the values.
 VOLUMES = [("engine", viewers.engine_volume(), 255), ("lobes", "synthetic:192x192x192:f32:lobes", None),
            ("heptane", SHARED / "heptane_302x302x302_uint8.nii.gz", 255),
            ("cthead", SHARED / "cthead_256x256x113_int16be.raw.gz", 4095)]

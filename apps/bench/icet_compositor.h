@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// IceT 2.2 (Moreland, Kendall, Peterka, Huang 2011), as ParaView has it, on the images that our exchanges get:
+// Composites the images of our exchanges with IceT 2.2 (Moreland, Kendall, Peterka, Huang 2011) as in ParaView:
 // one tile, premultiplied float RGBA without depth, blended in a given order.
 #pragma once
 
@@ -14,22 +14,24 @@ namespace understudy::bench {
 
 class IcetCompositor {
  public:
-  /// After MPI_Init; ends before MPI_Finalize.
+  /// To be constructed after MPI_Init and destroyed before MPI_Finalize.
   IcetCompositor();
   ~IcetCompositor();
   IcetCompositor(const IcetCompositor&) = delete;
   IcetCompositor& operator=(const IcetCompositor&) = delete;
 
-  /// Its strategies that keep an order, those that divide the image with and without interlacing it.
+  /// Returns the strategies that preserve an order; those that divide the image, both
+  /// with and without interlacing.
   static std::vector<std::string> strategies();
 
-  /// What is composed from now on: `order` front first, in an image of `pixels` x `pixels`.
+  /// Sets what is composited from now on: the ranks in `order`, front first, in an
+  /// image of `pixels` x `pixels`.
   void begin(int pixels, std::span<const int> order);
-  /// This rank's image, laid into an image of full size, as IceT takes it.
+  /// Copies this rank's image into an image of full size, as IceT requires it.
   void lay_in(const volume::Image& image);
-  /// Collective. On rank 0 the image, which is there until the next call; else nothing.
+  /// Collective. Returns the image on rank 0, valid until the next call, and an empty view elsewhere.
   volume::ImageView compose(const std::string& strategy);
-  /// That IceT itself counted in the last call, on this rank.
+  /// Returns the bytes that IceT itself counted in the last call, on this rank.
   static std::size_t bytes_sent();
 
  private:

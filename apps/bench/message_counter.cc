@@ -41,7 +41,8 @@ Sent take_sent() {
 
 }  // namespace understudy::bench
 
-// MPI's profiling interface: these stand in front of the library's own, which are called PMPI_*.
+// MPI's profiling interface: these functions take precedence over the library's own, which
+// remain available as PMPI_*.
 using understudy::bench::count_message;
 using understudy::bench::is_root;
 using understudy::bench::others;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a process sends through MPI, whoever asks for it: counted in MPI's own profiling interface, below the
-// libraries that are compared.
+// Counts what this process sends through MPI, whichever library sends it. The functions of MPI's profiling
+// interface count below the libraries that are compared.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ struct Sent {
   std::uint64_t bytes = 0;
 };
 
-/// By this process since it was last asked. A gathering counts as the messages that its definition says: one to
-/// the root, or one to each other rank. Barriers count for nothing.
+/// Returns what this process has sent since the last call. A gather counts as the messages of its definition:
+/// one to the root, or one to each other rank. Barriers do not count.
 Sent take_sent();
 
 }  // namespace understudy::bench

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A volume on two ranks: a frame of `understudy render -n 2` beside one of ParaView's pvbatch, in turn.
+"""A volume on two ranks: frames of `understudy render -n 2` and of ParaView's pvbatch, alternately.
 
-256^3 bytes on 512^2 pixels, one sample a voxel, the same camera and table; milliseconds of wall time, medians over rounds.
-ParaView casts rays by OpenGL (Mesa's software renderer) or on the CPU: the faster is `paraview`. psnr is that of our image
-against ParaView's. pvbatch is the one on PATH, or the program that UNDERSTUDY_PVBATCH names.
+256^3 bytes on 512^2 pixels, one sample a voxel, the same camera and transfer function; milliseconds of wall time, medians
+over rounds. ParaView casts rays with OpenGL (Mesa's software renderer) or on the CPU: the row `paraview` is the faster one.
+psnr compares our image with ParaView's. pvbatch is the one on PATH, or the program that UNDERSTUDY_PVBATCH names.
 """
 
 import json
@@ -23,16 +23,16 @@ RANKS = 2
 PIXELS = 512
 ROUNDS = 3
 FRAMES = 8
-SETTLE = 3  # frames in which ParaView distributes the volume and compiles
+SETTLE = 3  # first frames, in which ParaView distributes the volume and compiles
 CAMERA = {"azimuth": 31, "elevation": 29, "distance": 2.3}
 MODES = {"OpenGL": "GPU Based", "CPU": "Ray Cast Only"}
-# Dense: every value is a little opaque. Sparse: only the higher ones.
+# Dense: every value is slightly opaque. Sparse: only the higher ones are.
 TABLES = {"dense": [(0, (0.1, 0.3, 1), 0.002), (255, (1, 0.8, 0.2), 0.03)],
           "sparse": [(0, (0, 0, 0), 0), (139, (0.2, 0.4, 1), 0), (140, (0.2, 0.4, 1), 0.02), (255, (1, 0.9, 0.5), 0.5)]}
 
 
 def scene_of(table, mode, folder):
-    """What both programs are told, in a file that `understudy render --transfer-function` reads as well."""
+    """Writes the scene for both programs to a file, which `understudy render --transfer-function` can read, too."""
     control_points = [{"at": at, "colour": colour, "opacity": opacity} for at, colour, opacity in TABLES[table]]
     path = folder / f"paraview-{table}-{mode}.json"
     path.write_text(json.dumps({"volume": str(cube()), "side": SIDE, "scalars": "unsigned char", "pixels": PIXELS, **CAMERA,

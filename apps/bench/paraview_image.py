@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The images of `ranks.py` and `paraview_frames.py` by ParaView: run by Debian's pvbatch, on one rank or under mpirun.
+"""Renders the images of `ranks.py` and `paraview_frames.py` with ParaView: run by Debian's pvbatch, on one rank or under
+mpirun.
 
-Where the scene asks for frames, prints the milliseconds of each, in which the camera turns by a degree.
+If the scene specifies frames, prints the milliseconds of each; the camera turns by one degree per frame.
 """
 
 import json
@@ -40,7 +41,7 @@ def main():
     display.SetScalarBarVisibility(view, False)
     middle = (side - 1) / 2
     view.CameraFocalPoint = [middle] * 3
-    away = scene["distance"] * side * math.sqrt(3) / 2  # in half diagonals, as for understudy render --camera
+    away = scene["distance"] * side * math.sqrt(3) / 2  # half diagonals, as for understudy render --camera
 
     def look(azimuth):
         around, above = math.radians(azimuth), math.radians(scene["elevation"])

@@ -22,7 +22,7 @@ namespace {
 
 using namespace volume;
 
-/// Dense: every value is a little opaque. Sparse: only the higher values are.
+/// Dense: every value is slightly opaque. Sparse: only the higher values are.
 TransferFunction transfer_function(Scene scene) {
   constexpr int first_visible = 100;
   TransferFunction function;
@@ -37,13 +37,13 @@ TransferFunction transfer_function(Scene scene) {
   return function;
 }
 
-/// Along z, the volume a little larger than the image.
+/// View along z; the volume is slightly larger than the image.
 Matrix4 parallel_view() {
   const double zoom = 2.04;
   return {zoom, 0, 0, -zoom / 2, 0, zoom, 0, -zoom / 2, 0, 0, 2, -1, 0, 0, 0, 1};
 }
 
-/// The eye two edges away, 30 degrees around and 25 above, with an opening of 40 degrees.
+/// The eye is two edges away, at azimuth 30 and elevation 25 degrees; the field of view is 40 degrees.
 Matrix4 perspective_view() {
   constexpr double degree = std::numbers::pi / 180;
   const Vec3 back{std::sin(30 * degree) * std::cos(25 * degree), std::sin(25 * degree),
@@ -59,7 +59,8 @@ Matrix4 perspective_view() {
   return multiply(projection, multiply(camera, centred));
 }
 
-/// Ranks [first, last) one behind the other along z, in cells [low, high); returns where it stands.
+/// Arranges ranks [first, last) one behind the other along z, in cells [low, high). Returns the index of the
+/// split, or ~rank for a single rank.
 int halve(Partition& partition, int first, int last, int low, int high) {
   if (last - first == 1) return ~first;
   const int middle = (first + last) / 2;

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The same scene on one rank and on four: how far the two images are apart, in units of 1/255 (RMS over pixels and
-colours of the 8-bit images), under a transfer function narrower than a sample and under a smooth one.
+"""The same scene on one rank and on four: the difference of the two images, in units of 1/255 (RMS over pixels and colours of
+the 8-bit images), with a transfer function narrower than a sample and with a smooth one.
 
-64^3 floats, 256^2 pixels. Where Debian's paraview is installed its pvbatch renders the same scene, from the same camera:
-paraview and python3-vtk9 exclude each other, so the rows of one are missing where those of the other are.
+64^3 floats, 256^2 pixels. If Debian's paraview is installed, its pvbatch renders the same scene from the same camera.
+paraview and python3-vtk9 exclude each other, so rows of ParaView and rows of VTK cannot come from one installation.
 """
 
 import array
@@ -21,12 +21,12 @@ import viewers
 SIDE = 64
 PIXELS = 256
 CAMERA = {"azimuth": 31, "elevation": 29, "distance": 2.3}
-TABLES = {"narrow": (0.6, 0.002, 0.9), "smooth": (0.5, 0.5, 0.05)}  # the middle, half the width, and the opacity there
+TABLES = {"narrow": (0.6, 0.002, 0.9), "smooth": (0.5, 0.5, 0.05)}  # centre, half width, opacity at the centre
 METHODS = ["post-classified", "pre-integrated"]
 
 
 def waves():
-    """A gyroid about 0.5 as floats in a raw file."""
+    """Writes a gyroid around 0.5 to a raw file of floats."""
     path = viewers.OUT / "data" / f"waves_{SIDE}x{SIDE}x{SIDE}_f32.raw"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -39,7 +39,7 @@ def waves():
 
 
 def scene_of(table, folder):
-    """What both programs are told, in a file that `understudy render --transfer-function` reads as well."""
+    """Writes the scene for both programs to a file, which `understudy render --transfer-function` can read, too."""
     middle, half, opacity = TABLES[table]
     low, high = {"colour": [0.2, 0.4, 1], "opacity": 0}, {"colour": [1, 0.4, 0.2], "opacity": 0}
     control_points = [{"at": 0, **low}, {"at": middle - half, **low}, {"at": middle, "colour": [1, 0.9, 0.5], "opacity": opacity},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// understudy-bench-raycast: ray casting alone, without window, OpenGL or network. One image is rendered again
-// and again; its time is processor time for each sample that the image has, left out or not, and beside it
-// stands its error. Prints one JSON object.
+// understudy-bench-raycast: measures ray casting alone, without window, OpenGL or network. One image is
+// rendered repeatedly. Reports the processor time per sample of the image, whether the sample was taken or
+// skipped, and the error. Prints one JSON object.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
@@ -48,15 +48,15 @@ struct Settings {
   std::vector<double> surfaces;
   bool light = false;
   std::string backend = "cpu";
-  std::string judged;  ///< floats of another renderer's image; empty: ours is judged
-  int stride = 8;      ///< of the pixels whose error is measured
+  std::string judged;  ///< image of another renderer, as floats, to be judged; empty: ours is judged
+  int stride = 8;      ///< the error is measured at every stride-th pixel along each axis
   bool unjudged = false;
   int magnify = 1;
-  std::optional<std::uint64_t> noise;  ///< instead of the file, by this seed
+  std::optional<std::uint64_t> noise;  ///< seed of noise that replaces the file
   glsl::TextureMemoryWish gpu_memory;
 };
 
-/// Bytes without any likeness between neighbours: what is worst for caches.
+/// Uncorrelated bytes: the worst case for caches.
 std::vector<std::byte> noise(std::size_t count, std::uint64_t seed) {
   std::vector<std::byte> bytes((count + 7) / 8 * 8);
   for (std::size_t i = 0; i < bytes.size(); i += 8) {
@@ -71,7 +71,7 @@ std::vector<std::byte> noise(std::size_t count, std::uint64_t seed) {
   return bytes;
 }
 
-/// Every voxel of the file as often as settings.magnify says, along every axis.
+/// Returns the file's voxels, each repeated settings.magnify times along every axis.
 std::vector<std::byte> texels_of(const Settings& settings) {
   if (settings.noise)
     return noise(std::size_t(settings.size[0]) * std::size_t(settings.size[1]) * std::size_t(settings.size[2]),
@@ -102,8 +102,8 @@ std::vector<std::byte> texels_of(const Settings& settings) {
   return wide;
 }
 
-/// Dense: every value is a little opaque. Sparse: only the higher values are, and those soon hide the rest.
-/// Clear: none is, for surfaces alone.
+/// Dense: every value is slightly opaque. Sparse: only the higher values are, and they soon hide the rest.
+/// Clear: no value is, for surfaces alone.
 TransferFunction transfer_function(const std::string& name) {
   constexpr int first_visible = 140;
   TransferFunction function;
@@ -118,7 +118,8 @@ TransferFunction transfer_function(const std::string& name) {
   return function;
 }
 
-/// From two edges away, 30 degrees around and 25 above, with an opening of 40 degrees; one sample a voxel.
+/// The eye is two edges away, at azimuth 30 and elevation 25 degrees; field of view 40
+/// degrees, one sample a voxel.
 RenderRequest request(const Settings& settings) {
   constexpr double degree = std::numbers::pi / 180;
   const double side = *std::max_element(settings.size.begin(), settings.size.end());
@@ -209,7 +210,7 @@ VolumeDescription description_of(const Settings& settings, const RenderRequest& 
   return volume;
 }
 
-/// Adds to `figures` how far the image is from the sum of the same samples, and from the integral.
+/// Adds to `figures` the errors of the image against the sum of the same samples, and against the integral.
 void judge(const Settings& settings, const VolumeDescription& volume, std::span<const std::byte> texels,
            const RenderRequest& asked, const Image& image, nlohmann::ordered_json& figures) {
   const Field field = texture_field(volume, Filter::linear, texels);
@@ -226,14 +227,14 @@ void judge(const Settings& settings, const VolumeDescription& volume, std::span<
             walks_segments(asked) ? segment_sum(field, volume, asked, pixel) : slice_sum(field, asked, pixel);
         arithmetic.add(ours, same.at(x, y));
       }
-      if (!settings.surfaces.empty() || settings.light) continue;  // the integral knows neither
+      if (!settings.surfaces.empty() || settings.light) continue;  // the integral supports neither
       const double before = processor_seconds();
       total.add(ours, pixel_integral(field, settings.size, asked, medium, x, y).data());
       reference_seconds += processor_seconds() - before;
       ++rays;
     }
   }
-  // The kernel's own definition of adaptive steps has no other judge than the integral.
+  // Adaptive steps are defined by the kernel itself, so they can only be compared with the integral.
   if (settings.method != Method::adaptive) {
     figures["max_arithmetic"] = arithmetic.largest;
     figures["rms_arithmetic"] = arithmetic.rms();
@@ -255,7 +256,7 @@ nlohmann::ordered_json measure(const Settings& settings) {
   store.add_slices(volume.stored, texels);
   store.finish();
   if (settings.unjudged) texels = {};
-  // Mesa's threads are counted when the context is made.
+  // Mesa reads its number of threads when the context is created.
   setenv("LP_NUM_THREADS", fmt::format("{}", settings.threads).c_str(), 0);
   std::optional<glsl::Device> device;
   if (settings.backend != "cpu")
@@ -266,7 +267,7 @@ nlohmann::ordered_json measure(const Settings& settings) {
              : cpu_renderer(store);
   Image image(asked.viewport);
   FrameCounts counts;
-  caster->render(asked, image, counts);  // what depends on the table alone is made once
+  caster->render(asked, image, counts);  // makes once what depends on the transfer function alone
   std::vector<double> wall, processor;
   for (int frame = 0; frame < settings.frames; ++frame) {
     const auto start = std::chrono::steady_clock::now();

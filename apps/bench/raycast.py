@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ray casting alone, in processor time for each full sample: one inside the volume, whether it was left out or not.
+"""Ray casting alone, in processor time per full sample: a sample inside the volume, whether taken or skipped.
 
-With --sizes 256,512,1024 cubes so large instead (multiples of 256; 1024 takes 2.7 GiB), by one ray a voxel, of real
-voxels and of noise.
+With --sizes 256,512,1024 it renders cubes of these sizes instead (multiples of 256; 1024 takes 2.7 GiB), with one ray a
+voxel, of real voxels and of noise.
 
-256^3 voxels on 512^2 pixels, one sample a voxel, one thread unless the row says otherwise. Beside each time stands the
-error against the same samples in double precision (rms_arithmetic), and against the volume rendering integral, which
-has no samples (rms_total; not of surfaces and light, which the integral does not know). Where the prototype at
-UNDERSTUDY_YARDSTICK (../shared/yardstick beside the checkout, if the variable is not set) can run, its program renders
-the same images of the same volume in turn.
+256^3 voxels on 512^2 pixels, one sample a voxel, one thread unless the row says otherwise. Beside each time are the error
+against the same samples in double precision (rms_arithmetic), and the error against the volume rendering integral, which is
+independent of samples (rms_total; not for surfaces and light, which the integral does not support). If the prototype at
+UNDERSTUDY_YARDSTICK (default: ../shared/yardstick beside the checkout) can run, its program renders the same images of the
+same volume in turn.
 """
 
 import json
@@ -29,7 +29,7 @@ ROUNDS = 5
 FRAMES = 5
 EPSILON = 1e-5
 FULL = f"{SIDE}x{SIDE}x{SIDE}"
-# By the row's name: what the program is asked for, and what the prototype is.
+# By row name: the options of the program, and the arguments of the prototype.
 CASES = {
     "cpu/post-classified/dense": (["--table", "dense"], ("dense", 1)),
     "cpu/post-classified/sparse": (["--table", "sparse"], ("sparse", 1)),
@@ -48,7 +48,7 @@ CASES = {
     "gl-osmesa/post-classified/sparse": (["--table", "sparse", "--backend", "gl-osmesa"], None),
 }
 YARDSTICK_LINE = re.compile(r"^(\S+)\s+post float4\s+ert1 skip1 .* ([0-9.]+) ns/full\.core", re.MULTILINE)
-YARDSTICK = Path(os.environ.get("TMPDIR", "/tmp")) / "yardstick"  # where its script keeps what it makes
+YARDSTICK = Path(os.environ.get("TMPDIR", "/tmp")) / "yardstick"  # folder in which its script keeps its output
 
 
 def compiled(program, source, *options):
@@ -57,9 +57,9 @@ def compiled(program, source, *options):
 
 
 def yardstick():
-    """The prototype, as a function of table and threads that gives nanoseconds; None where it cannot run.
+    """Returns the prototype as a function of table and threads that returns nanoseconds, or None if it cannot run.
 
-    Its script asks for AVX-512. Where there is AVX2 alone, a program of ours times the prototype's kernel for that.
+    Its script requires AVX-512. Where there is only AVX2, a program of ours times the prototype's AVX2 kernel.
     """
     folder = Path(os.environ.get("UNDERSTUDY_YARDSTICK", viewers.ROOT.parent / "shared" / "yardstick"))
     if not os.access(folder / "run", os.X_OK):
@@ -92,7 +92,7 @@ def yardstick():
 
 
 def measured(volume, size, options, frames=FRAMES, epsilon=EPSILON):
-    """`volume` is a file, or a list of options instead of one."""
+    """Runs the program; `volume` is a file, or a list of options that replaces it."""
     program = viewers.PROGRAMS / "understudy-bench-raycast"
     source = volume if isinstance(volume, list) else [str(volume)]
     text = subprocess.run([str(program), *source, "--size", size, "--frames", str(frames), "--epsilon", str(epsilon),
@@ -100,12 +100,14 @@ def measured(volume, size, options, frames=FRAMES, epsilon=EPSILON):
     return json.loads(text)
 
 
-# VTK's mappers render the same images where Debian's python3-vtk9 and xvfb are installed; one round is slow enough.
+# VTK's mappers render the same images if Debian's python3-vtk9 and xvfb are installed. They are slow, so one round is enough.
 VTK_CASES = {f"vtk-{mapper}/{table}": (mapper, table) for mapper in ("gpu", "fixed-point") for table in ("dense", "sparse")}
 
 
 def vtk_scene(volume, table):
-    """The camera and the tables of raycast.cc: from two edges away, 30 degrees around and 25 above, opened by 40."""
+    """Describes the camera and transfer functions of raycast.cc: two edges away, azimuth 30, elevation 25, field of view
+    40 degrees.
+    """
     around, above, first_visible = math.radians(30), math.radians(25), 140
     back = (math.sin(around) * math.cos(above), math.sin(above), math.cos(around) * math.cos(above))
     control_points = []
@@ -163,7 +165,7 @@ def slice_rows(volume, rows_so_far):
 
 
 def enough_memory(side):
-    """For a cube's bytes, and for bricks that hold 9^3 for every 8^3 of them, and an image."""
+    """Checks for memory for a cube's bytes, for bricks that store 9^3 texels for each 8^3, and for an image."""
     needed = 2.5 * side**3 + 16 * side**2
     free = 1024 * int(re.search(r"MemAvailable:\s+(\d+)", Path("/proc/meminfo").read_text(encoding="ascii")).group(1))
     if needed > 0.9 * free:
@@ -173,10 +175,10 @@ def enough_memory(side):
 
 
 def size_rows(volume, sizes):
-    """Larger cubes, one ray a voxel, in turn: the time of a sample beside that of the smallest.
+    """Larger cubes, one ray a voxel, in turn: the time per sample compared with that of the smallest.
 
-    Voxels of the same volume as often as fits, and bytes of a hash, whose blocks are all different; their rays do not
-    end early, so that every one of them is read.
+    The voxels are those of the same volume, magnified, or noise from a hash, whose blocks all differ. Rays through noise are
+    not terminated early, so every noise block is read.
     """
     kinds, times = {"dense": ("dense", False), "sparse": ("sparse", False), "dense/noise": ("dense", True)}, {}
     sizes = [side for side in sizes if enough_memory(side)]
@@ -197,7 +199,7 @@ def size_rows(volume, sizes):
 def rows(sizes=()):
     prototype = yardstick()
     if prototype:
-        prototype("dense", 1)  # builds it, and its volume
+        prototype("dense", 1)  # builds the prototype and its volume
     volume = YARDSTICK / f"{SIDE}.raw" if prototype else cube()
     if sizes:
         return size_rows(volume, sizes)

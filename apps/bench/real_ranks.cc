@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// understudy-bench-real-ranks: images of real node groups on this machine, beside what the model
-// (frame_parts.h, frame_time.h) said of them: bytes and messages, to be equal, and times. Prints one JSON
-// object a line. The costs of messages, bytes and blending are those that understudy-bench-messages printed;
-// what a sample and a ray cost is measured on one rank.
+// understudy-bench-real-ranks: compares images of real node groups on this machine with the model
+// (frame_parts.h, frame_time.h): bytes and messages, which must be equal, and times. Prints one JSON object a
+// line. The costs of messages, bytes and blending are those printed by understudy-bench-messages; the costs of
+// samples and rays are measured on one rank.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -46,13 +46,13 @@ struct Settings {
   std::string costs;
 };
 
-/// A volume and one image of it.
+/// A volume and a request for one image of it.
 struct Scene {
   std::string name;
   compositor::LoadRequest load;
   std::vector<std::byte> texels;
   volume::RenderRequest request;
-  volume::RenderRequest sparser;  ///< the same rays with a quarter of the samples
+  volume::RenderRequest sparser;  ///< the same rays, with a quarter of the samples
 };
 
 Scene scene_of(const Settings& settings, volume::VolumeId id, const std::string& kind) {
@@ -77,13 +77,13 @@ Scene scene_of(const Settings& settings, volume::VolumeId id, const std::string&
   };
   scene.request = request(1);
   scene.sparser = request(4);
-  // Nothing is left out of the volume that is nowhere empty, so that its time is that of all samples.
-  // What opaque tiles save depends on when their control messages come.
+  // Disable early ray termination: in the volume that is nowhere empty, the time is then that of all samples.
+  // Also, the savings from opaque tiles depend on when their control messages arrive.
   scene.request.termination = scene.sparser.termination = 0;
   return scene;
 }
 
-/// The shortest of several images, in milliseconds.
+/// The shortest times of several images, in milliseconds.
 struct Measured {
   double render = std::numeric_limits<double>::max();
   double exchange = render;
@@ -116,7 +116,7 @@ const char* name_of(Gather gather) {
 
 struct WayMeasured {
   std::vector<Measured> scenes;
-  Measured sparser;  ///< of the last scene
+  Measured sparser;  ///< of the last scene in `scenes`
 };
 
 void measure(const Settings& settings, const std::vector<Scene>& scenes, const Way& way,
@@ -148,7 +148,7 @@ bench::Costs message_cost(const Settings& settings) {
   costs.cores = settings.cores;
   if (settings.costs.empty()) return costs;
   const auto given = nlohmann::json::parse(settings.costs);
-  // What one small message takes from rank to rank is a processor's time at both ends.
+  // Between ranks of one machine, the latency of a small message is processor time at both ends.
   costs.latency = 0;
   costs.overhead = costs.gap = double(given.at("latency")) / 2;
   costs.per_byte = given.at("per_byte");
@@ -159,7 +159,7 @@ bench::Costs message_cost(const Settings& settings) {
   return costs;
 }
 
-/// From the times of one rank, which has all cores to itself.
+/// Derives the costs of samples and rays from the times of one rank, which uses all cores.
 void calibrate(bench::Costs& costs, const Settings& settings, const Scene& scene, const WayMeasured& one_rank) {
   const volume::KdTree tree(scene.load.volume, 1);
   const bench::FrameParts all = bench::cast_parts(scene.load.volume, scene.texels, scene.request, tree),
@@ -176,7 +176,7 @@ using RenderTimes = std::map<std::pair<int, std::size_t>, double>;  ///< by rank
 
 MeasuredWays measure_all(const Settings& settings, const std::vector<Scene>& scenes) {
   MeasuredWays measured;
-  // Numbers of ranks follow each other fastest, so that a machine that is busier for a while is so for all.
+  // The number of ranks varies fastest, so that a temporary load of the machine affects all of them.
   for (int round = 0; round < settings.rounds; ++round)
     for (std::size_t a = 0; a < compositor::algorithm_count; ++a)
       for (const Gather gather : {Gather::direct, Gather::root})
@@ -187,7 +187,7 @@ MeasuredWays measure_all(const Settings& settings, const std::vector<Scene>& sce
   return measured;
 }
 
-/// Rendering does not depend on how the parts become one: its shortest time is that of all ways.
+/// Rendering does not depend on the exchange, so its shortest time is taken over all ways.
 RenderTimes render_times(const MeasuredWays& measured, std::size_t scenes) {
   RenderTimes render;
   for (const auto& [way, of_way] : measured)

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Viewers whose nodes, or whose OpenGL, are at the other end of a line: milliseconds and bytes a frame.
+"""Viewers whose nodes or OpenGL are at the other end of a network connection: milliseconds and bytes a frame.
 
-Lines: none (one machine, Unix sockets), TCP on this machine, and two hosts that are network namespaces of this machine,
-joined by 1 Gbit/s with 0.5 ms to the other end and back, or by 100 Mbit/s with 20 ms (tests/hosts). Ways: the viewer's own
-OpenGL and nodes there, all of it on a GL server there; as it is, or with JPEG images while the view turns, or with bytes for
-the nodes' images. The bundled viewer turns 256^3 voxels in 512^2 pixels, or is at rest; glxgears has no volume. Each round
-has every line, and each line every way; times and ratios are medians of those of the rounds. What travelled is counted on the
-longer of two runs, less the shorter: upwards before it was compressed, as the volume, which is compressed by what the line
-seemed to be, travels in both runs; downwards as it travelled. What encryption costs is measured on noise between two threads,
-with and without in turns, as fast as this machine's own network goes and with that held to 1 Gbit/s (encryption.cc).
-Only root can make such lines.
+Lines: none (one machine, Unix sockets); TCP on this machine; and two hosts, which are network namespaces of this machine,
+joined by 1 Gbit/s with a round-trip time of 0.5 ms, or by 100 Mbit/s with 20 ms (tests/hosts). Ways: the viewer's own OpenGL
+with remote nodes, also with bytes for the nodes' images; and everything on a remote GL server, also with JPEG images while
+the view turns. The bundled viewer turns 256^3 voxels in 512^2 pixels, or is at rest; glxgears has no volume. Each round runs
+every line, and each line every way; times and ratios are medians over the rounds. Traffic is the difference between a longer
+and a shorter run: upwards before compression, because the volume, which is compressed according to the estimated bandwidth,
+is sent in both runs; downwards as sent. The cost of encryption is measured on noise sent between two threads, with and
+without encryption in turns, at the full speed of this machine's network and limited to 1 Gbit/s (encryption.cc). Only root
+can create such connections.
 """
 
 import contextlib
@@ -47,7 +47,7 @@ def on(host):
 
 @contextlib.contextmanager
 def server(folder, host, options=()):
-    """`understudy serve` with two nodes and a GL server; where it listens, and the secret."""
+    """Runs `understudy serve` with two nodes and a GL server; yields the options that connect to it."""
     secret = folder / "secret"
     where = f"10.77.0.1:{PORT}" if host else f"127.0.0.1:{PORT}"
     with open(folder / "serve.log", "w+", encoding="utf-8") as log:
@@ -68,7 +68,7 @@ def server(folder, host, options=()):
 
 
 class Client:
-    """Runs viewers on one side of a line."""
+    """Runs viewers at one end of a line."""
 
     def __init__(self, folder, host, link, display):
         self.folder, self.host, self.display = folder, host, display
@@ -84,7 +84,7 @@ class Client:
         return {**viewers.SOFTWARE, "DISPLAY": self.display, "vblank_mode": "0"}
 
     def travelled(self):
-        """Bytes up and down, and round trips, of the last run."""
+        """Returns the bytes up and down, the round trips and the frames of the last run."""
         report = viewers.read_report(self.folder / "report.json")
         connection, remote = report.get("connection"), report.get("server_connection")
         return {"up": connection["up"]["payload_bytes"] if connection else 0,
@@ -99,7 +99,7 @@ class Client:
         return [float(ms) for ms in re.findall(r"^frame \d+: ([0-9.]+) ms$", text, re.MULTILINE)]
 
     def turning(self, options, orbit=4):
-        """Milliseconds a frame, and what each takes of the line."""
+        """Returns the milliseconds of a frame, and its traffic."""
         counts = []
         for frames in FRAMES:
             times = self.viewer(options, frames, orbit)
@@ -109,7 +109,7 @@ class Client:
             what: (counts[1][what] - counts[0][what]) / between for what in ("up", "down", "round_trips")}
 
     def gears(self, options):
-        """The same of glxgears, which draws until it is ended."""
+        """Returns the same for glxgears, which draws until it is terminated."""
         command = ["timeout", GEARS_SECONDS, *self.prefix(options), "glxgears", "-geometry", f"{SIDE}x{SIDE}"]
         subprocess.run([str(word) for word in command], env={**os.environ, **self.environment()}, stdin=subprocess.DEVNULL,
                        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
@@ -119,7 +119,7 @@ class Client:
 
 
 def measure(line, folder, display, host_of_server=None, host_of_client=None):
-    """Figures of one line by name, once each."""
+    """Measures each figure of one line once; returns them by name."""
     with contextlib.ExitStack() as stack:
         link = None if line == "one machine" else stack.enter_context(server(folder, host_of_server))
         client = Client(folder, host_of_client, link, display)
@@ -133,13 +133,13 @@ def measure(line, folder, display, host_of_server=None, host_of_client=None):
 
 
 def encryption():
-    """Seconds of processor time a byte at both ends, and bytes a second, with and without in turns."""
+    """Returns processor time a byte at both ends and bytes a second, with and without encryption in turns."""
     text = subprocess.run([str(viewers.PROGRAMS / "understudy-bench-encryption")], stdout=subprocess.PIPE, text=True, check=True).stdout
     return [json.loads(line) for line in text.splitlines()]
 
 
 def rows_of_encryption(place, turns):
-    """The ratios are those of neighbouring turns."""
+    """Returns the rows; each ratio compares neighbouring turns."""
     pairs = list(zip(turns[::2], turns[1::2]))
     result = []
     for what, unit, scale in (("send_ns_per_byte", "ns/B", 1), ("receive_ns_per_byte", "ns/B", 1), ("bytes_per_second", "MB/s", 1e-6)):
@@ -153,7 +153,7 @@ def rows_of_encryption(place, turns):
 
 
 def in_namespaces(line, folder, display):
-    """The same between two hosts, in a process whose namespaces go with it."""
+    """Measures the same between two hosts, in a process whose namespaces end with it."""
     rate, one_way = LINES.get(line, ("1gbit", 0))
     text = subprocess.run(
         ["unshare", "--mount", "--net", "--pid", "--fork", "--mount-proc", "--propagation", "private", sys.executable, "-B",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// understudy-bench-scaling: what an image would cost on 1 to 1,024 ranks. Partition, rays, footprints and the
-// bytes of every message are those of the nodes (frame_parts.h); time alone is modelled (frame_time.h). Prints
-// one JSON object a line.
+// understudy-bench-scaling: models the cost of an image on 1 to 1,024 ranks. Partition, rays, footprints and
+// the bytes of every message are those of the nodes (frame_parts.h); only time is modelled (frame_time.h).
+// Prints one JSON object a line.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -36,27 +36,27 @@ namespace {
 using namespace understudy;
 
 struct Settings {
-  int side = 512;              ///< voxels, along each axis
-  bool weak = false;           ///< `side` is for one rank; the volume grows with their number
-  bool growing_image = false;  ///< so does `pixels`, with the volume's side
+  int side = 512;              ///< number of voxels along each axis
+  bool weak = false;           ///< weak scaling: `side` is for one rank; the volume grows with the ranks
+  bool growing_image = false;  ///< `pixels` grows in proportion to the volume's side
   int pixels = 1024;
   int most_ranks = 1024;
-  int cast_ranks = 0;  ///< up to so many ranks boxes are cast
-  std::string volume;  ///< a file instead of the cube
+  int cast_ranks = 0;  ///< boxes are really cast on up to this many ranks
+  std::string volume;  ///< volume file, used instead of the cube
   std::string table = "vessels";
   bool by_cost = false;
   bench::Costs costs;
   double gigabits = 100;
 };
 
-/// What is drawn: texels, where there are any, and one image.
+/// What is drawn: texels, if there are any, and one image.
 struct Scene {
   volume::VolumeDescription description;
   std::vector<std::byte> texels;
   volume::RenderRequest request;
 };
 
-/// Every sample of it shows something, and no ray ends before it leaves the cube.
+/// A cube in which every sample is visible, and no ray terminates before it leaves the cube.
 Scene dense_cube(const Settings& settings, int ranks) {
   const double growth = settings.weak ? std::cbrt(double(ranks)) : 1;
   const int side = int(std::lround(settings.side * growth));
@@ -96,7 +96,7 @@ Scene volume_in_file(const Settings& settings) {
   return scene;
 }
 
-/// How many samples are to be expected where.
+/// Returns the expected number of samples in each block.
 volume::BlockCosts expected_costs(const Scene& scene, bool dense) {
   const volume::TexelBox lattice = volume::cell_lattice(scene.description).box();
   constexpr int block = volume::BrickStore::block_cells;
@@ -108,7 +108,7 @@ volume::BlockCosts expected_costs(const Scene& scene, bool dense) {
     volume::add_expected_samples(store, scene.request, costs);
     return costs;
   }
-  // A hundred cubes along each axis tell where the rays lie more densely.
+  // A hundred blocks along each axis are enough to resolve the density of the rays.
   const int longest = *std::ranges::max_element(scene.description.size);
   volume::BlockCosts costs(lattice, block * std::max(1, longest / (100 * block)));
   const std::array<int, 3>& counts = costs.counts();
@@ -139,7 +139,7 @@ volume::Partition partition_of(const Settings& settings, const Scene& scene, int
 
 nlohmann::ordered_json exchange_row(const Settings& settings, const bench::FrameParts& parts,
                                     compositor::Algorithm algorithm, double& render_ms) {
-  // Rank 0 has the application's machine to itself.
+  // Rank 0 is on the application's machine, the others on machines of their own: images are gathered on rank 0.
   const compositor::CountedExchange counted = bench::counted(
       parts, algorithm, compositor::Gather::root, volume::Operator::over, compositor::Layout::rgba32f);
   const bench::FrameTime time = bench::time_of(parts, counted, settings.costs);

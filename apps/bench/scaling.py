@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Images on 1 to 1,024 ranks, on paper, and on 1 to 8 real ranks of this machine beside what the paper says of them.
+"""Modelled images on 1 to 1,024 ranks, and 1 to 8 real ranks of this machine compared with the model.
 
-On paper partition, rays and the bytes of every message are the nodes' own and time is modelled (frame_time.h): a node samples
-in SAMPLE_NS, the line between nodes carries 100 Gbit/s, a small message takes 5 us. Strong: the same cube on more ranks; weak:
-a cube that grows with them, and once with it the image. `value` is rendering on the slowest rank and then the cheapest
-exchange; beside it the speed-up over all samples on one rank, its part that every rank gives (efficiency), and what travels.
-
-The check runs first. Bytes and messages must be equal; of times both are there, and their ratio. Plots and tables go to
-out/bench/scaling/.
+In the model, partition, rays and the bytes of every message are the nodes' own, and time is modelled (frame_time.h): a node
+takes a sample in SAMPLE_NS, the network carries 100 Gbit/s between nodes, a small message takes 5 us. Strong: the same cube
+on more ranks; weak: a cube that grows with the ranks, once with an image that grows, too. `value` is rendering on the slowest
+rank plus the cheapest exchange. Beside it are the speed-up over all samples on one rank, the speed-up divided by the number
+of ranks (efficiency), and the traffic. The check against real ranks runs first: bytes and messages must be equal; of times,
+both and their ratio are listed. Plots and tables go to out/bench/scaling/.
 """
 
 import json
@@ -35,7 +34,9 @@ def lines_of(program, options):
 
 
 def message_cost():
-    """What messages, bytes and blending cost between two ranks of this machine, as real_ranks.cc takes it."""
+    """Returns the costs of messages, bytes and blending between two ranks of this machine, in the form that real_ranks.cc
+    takes.
+    """
     environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     return subprocess.run(["mpirun", "-n", "2", "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1",
                            "--mca", "plm", "isolated", "--mca", "btl", "self,vader",
@@ -44,7 +45,7 @@ def message_cost():
 
 
 def checked(folder):
-    """Rows of real ranks. Raises RuntimeError where a byte or a message is not as predicted."""
+    """Returns the rows of real ranks. Raises RuntimeError if bytes, messages or samples differ from the prediction."""
     costs, *images = lines_of("understudy-bench-real-ranks", ["--most-ranks", REAL_RANKS, "--costs", message_cost()])
     for key in ("bytes", "messages", "samples"):
         wrong = [image for image in images if image[key] != image[f"{key}_counted"]]
@@ -63,7 +64,9 @@ def checked(folder):
 
 
 def real_table(images):
-    """By number of ranks: direct-send, written directly; in brackets the ratios of all exchanges and both ways of gathering."""
+    """Makes the table by number of ranks: direct-send, gathered directly; in brackets, the range of the ratios over all
+    exchanges and both ways to gather.
+    """
     lines = ["| ranks | messages | bytes | render ms: predicted | measured | ratio | exchange ms: predicted | measured | ratio "
              "| frame ms: predicted | measured | ratio |", "|---|---|---|---|---|---|---|---|---|---|---|---|"]
     for ranks in range(1, REAL_RANKS + 1):
@@ -84,7 +87,7 @@ def simulated(options):
 
 
 def check_rays():
-    """Raises RuntimeError where boxes that are really cast take other samples or send other bytes than their rays tell."""
+    """Raises RuntimeError if really cast boxes differ from those derived from their rays, in samples or in bytes sent."""
     options = ["--side", CAST["side"], "--most-ranks", CAST["ranks"]]
     for cast, told in zip(simulated([*options, "--cast-ranks", CAST["ranks"]]), simulated(options)):
         if {**cast, "parts": ""} != {**told, "parts": ""}:
@@ -132,7 +135,7 @@ def rows():
     on_paper = [row_of(name, frame) for name, frames in runs.items() for frame in frames]
     (folder / "table.md").write_text(table(on_paper), encoding="utf-8")
     (folder / "runs.json").write_text(json.dumps(runs), encoding="utf-8")
-    # Matplotlib is Debian's, whatever python this is.
+    # Use Debian's python, which has Matplotlib, whatever python runs this script.
     subprocess.run(["/usr/bin/python3", "-B", str(Path(__file__).with_name("scaling_plot.py")), str(folder)],
                    input=json.dumps(runs), text=True, check=True)
     return result + on_paper

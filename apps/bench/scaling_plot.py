@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scaling_plot.py FOLDER: the runs of scaling.py, which come as JSON, as strong.png, weak.png and sparse.png."""
+"""scaling_plot.py FOLDER: plots the runs of scaling.py, read as JSON from stdin, to strong.png, weak.png and sparse.png."""
 
 import json
 import sys
@@ -44,7 +44,7 @@ def plain(axis):
 
 
 def gains(axes, below, cases, most):
-    """Speed-up and efficiency of cases: name -> (runs by partition, colour)."""
+    """Plots speed-up and efficiency of the cases: name -> (runs by partition, colour)."""
     axes.plot([1, most], [1, most], color="0.75", linewidth=1)
     axes.annotate("ideal", (most / 4, most / 4), textcoords="offset points", xytext=(-4, 2), ha="right", fontsize=8,
                   color="0.5")
@@ -64,7 +64,7 @@ def gains(axes, below, cases, most):
 
 
 def traffic(axes, frames, most):
-    """Mean and busiest rank's bytes, of each exchange."""
+    """Plots the bytes of each exchange: the mean over ranks, and the busiest rank."""
     frames = [frame for frame in frames if frame["ranks"] > 1]
     for name, colour in EXCHANGES.items():
         axes.plot(ranks_of(frames), [frame[name]["bytes_a_rank"] / 1e6 for frame in frames], color=colour, label=name,
@@ -78,7 +78,7 @@ def traffic(axes, frames, most):
 
 
 def times(axes, frames, most):
-    """Where an image's time goes."""
+    """Plots the parts of an image's time."""
     axes.plot(ranks_of(frames), [frame["render_ms"] for frame in frames], color="0.3", label="rendering", linewidth=1.6)
     frames = [frame for frame in frames if frame["ranks"] > 1]
     for name, colour in EXCHANGES.items():

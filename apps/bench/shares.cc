@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// understudy-bench-shares: how many images a client of `understudy serve` gets in a second, by turns: alone,
-// beside a client whose requests are over the limit and refused, and beside one that asks for as much as it
-// may. Both of them ask again as soon as they are answered. Prints one JSON object for each turn.
+// understudy-bench-shares: counts the images that a client of `understudy serve` gets in a second, in turn:
+// alone, beside a client whose requests exceed the limit and are refused, and beside a client that requests as
+// much as the limit allows. Both neighbours send the next request as soon as the last one is answered. Prints
+// one JSON object for each turn.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -33,9 +34,10 @@ using namespace understudy::compositor;
 constexpr int volume_side = 64;
 constexpr volume::VolumeId the_volume = 7;
 
-/// A client that has loaded its volume.
+/// Returns a client that has loaded its volume.
 std::unique_ptr<LoadingService> client_of(const std::string& socket) {
-  // A neighbour on a busy machine takes longer than its limit, and is not to be lost for that.
+  // On a busy machine, a neighbour's image takes longer than the default limit; it must not
+  // be disconnected for that.
   Patience patience;
   patience.render = std::chrono::minutes(2);
   auto service = remote_loading_service(socket, patience);
@@ -49,7 +51,7 @@ std::unique_ptr<LoadingService> client_of(const std::string& socket) {
   return service;
 }
 
-/// side² pixels of so many samples: no opacity ends a ray, and nothing is empty.
+/// A request of side^2 pixels with `samples` samples each: the opacity terminates no ray, and nothing is empty.
 volume::RenderRequest request_of(int side, int samples) {
   volume::RenderRequest request;
   request.volume = the_volume;
@@ -64,7 +66,7 @@ volume::RenderRequest request_of(int side, int samples) {
   return request;
 }
 
-/// An image is not that of the request before: it is cast.
+/// Moves the view slightly with each request, so that no image can be reused and each is cast.
 volume::RenderRequest moved(volume::RenderRequest request, int number) {
   request.texture_to_clip[3] += 1e-3 * (number % 97);
   return request;
@@ -84,7 +86,7 @@ void ask(RenderService& service, const volume::RenderRequest& request, int numbe
   }
 }
 
-/// A client on a thread of its own, which asks until it is told to leave.
+/// A client on its own thread, which sends requests until leave() is called.
 class Neighbour {
  public:
   Neighbour(const std::string& socket, const volume::RenderRequest& request)
@@ -101,7 +103,7 @@ class Neighbour {
 
   void wait_until_it_asks() const { asks_.wait(false); }
 
-  /// Waits for its last answer, and throws what ended it early.
+  /// Waits for the last answer. Rethrows the exception that ended the thread early, if any.
   Answers leave() {
     thread_.request_stop();
     thread_.join();
@@ -118,12 +120,12 @@ class Neighbour {
   std::atomic<bool> asks_ = false;
   Answers answers_;
   std::exception_ptr failure_;
-  std::jthread thread_;  // the last, since it uses the others
+  std::jthread thread_;  // last member, because it uses the others
 };
 
 struct Beside {
   const char* name;
-  std::optional<volume::RenderRequest> request;  ///< none: nobody
+  std::optional<volume::RenderRequest> request;  ///< empty: there is no neighbour
   double seconds;
 };
 
@@ -136,7 +138,7 @@ nlohmann::json turn(const std::string& socket, const char* size, const volume::R
     neighbour->wait_until_it_asks();
   }
   Answers mine;
-  ask(*service, own, 0, mine);  // compiles what a first image needs
+  ask(*service, own, 0, mine);  // the first image includes one-time preparation
   mine = {};
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
@@ -172,13 +174,13 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
 
-  // 8192² pixels of 2^22 samples each are 128 times as many as one image may have, and refused at once; the
-  // others are half as many as it may have, and cast for as long as an image may take.
+  // 8192^2 pixels of 2^22 samples each are 128 times the limit of one image, and refused at once. The other
+  // request is half of the limit, and is cast for as long as an image may take.
   const volume::RenderRequest excessive = request_of(8192, 1 << 22);
   const volume::RenderRequest endless = request_of(2048, 1 << 18);
   static_assert((std::uint64_t(8192) * 8192 << 22) / limits::max_image_samples == 128);
   static_assert((std::uint64_t(2048) * 2048 << 18) * 2 == limits::max_image_samples);
-  // Requests below limits::short_request and above it are given turns in different ways.
+  // Requests below and above limits::short_request are scheduled differently.
   const std::array<std::pair<const char*, volume::RenderRequest>, 2> sizes = {
       {{"small", request_of(128, 64)}, {"large", request_of(512, 512)}}};
   const std::array<Beside, 3> besides = {{{"nobody", std::nullopt, seconds},

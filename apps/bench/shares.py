@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a client of `understudy serve` gets beside others: images a second alone, beside a client whose requests are over
-the limit and refused, and beside one that asks for as much as it may, without pause.
+"""What a client of `understudy serve` gets beside others: images a second alone, beside a client whose requests exceed the
+limit and are refused, and beside one that continuously requests as much as the limit allows.
 
-All turns follow each other in each round. A value is the median over the rounds, a ratio the median of the rounds' own.
+Each round runs all turns one after another. A value is the median over the rounds; a ratio is the median of the rounds'
+ratios.
 """
 
 import json
@@ -21,7 +22,7 @@ PATIENCE_SECONDS = 60
 
 
 def wait_for_nodes(server):
-    """`serve` tells where its nodes are once they are there."""
+    """Waits until `serve` prints where its nodes are, which it does once they are ready."""
     timer = threading.Timer(PATIENCE_SECONDS, server.kill)
     timer.start()
     try:

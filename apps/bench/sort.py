@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What ranks of this machine take by what they divide (`understudy render -n N --sort …`), beside this process alone.
+"""Times of ranks of this machine by what they divide (`understudy render -n N --sort …`), beside this process alone.
 
-Times: all ways follow each other in each round; a value is the median over the rounds of the median frame, a ratio the
-median of the rounds' own. Samples: those of all ranks against one rank's, and the busiest rank's against the mean, over
-VIEWS views at random, none of which is near the one before. Deviation is (max - min) / mean of the ranks' processor
-times. Division is the part of a frame in which ranks estimate costs and cut the image.
+Times: each round runs all ways one after another; a value is the median over the rounds of the median frame, a ratio the
+median of the rounds' ratios. Samples: those of all ranks against those of one rank, and those of the busiest rank against the
+mean, over VIEWS unrelated random views. The deviation is (max - min) / mean of the ranks' processor times. Division is the
+fraction of a frame in which ranks estimate costs and cut the image.
 """
 
 import json
@@ -24,7 +24,7 @@ SCENES = {
     "engine's surface": [ENGINE, "--surface", "40%", "--no-volume"],
     "lobes": ["synthetic:256x256x256:u8:lobes", "--transfer-function", "vessels"],
 }
-# Real volumes, where they lie beside the checkout.
+# Real volumes, if they are beside the checkout.
 DATA = viewers.ROOT.parent / "shared" / "data"
 SCENES |= {name: [str(DATA / file), "--transfer-function", table] for name, file, table in (
     ("CT head", "cthead_256x256x113_int16be.raw.gz", "ct"), ("aneurism", "aneurism_256x256x256_uint8.raw.gz", "vessels"),
@@ -66,7 +66,7 @@ def over_mean(values):
 
 
 def views(name, scene, folder):
-    """Of many ranks, which share this machine's cores: what each takes, not how long all of them do."""
+    """Measures many ranks, which share this machine's cores: so the work of each, not the time of all."""
     chosen = random.Random(24)
     cameras = [f"{chosen.uniform(0, 360):.1f},{math.degrees(math.asin(chosen.uniform(-1, 1))):.1f},{chosen.uniform(2, 4):.2f}"
                for _ in range(VIEWS)]

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A viewer without eyes that turns a volume: what lies between the hand and the image. JSON lines for
-// view.py.
+// A client without a display that turns a volume: measures the time from user input to the image.
+// Prints JSON lines for view.py.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,11 +25,11 @@ double at_share(std::vector<double> values, double share) {
   return values[std::min(values.size() - 1, std::size_t(share * double(values.size())))];
 }
 
-/// A way that an image takes: what is asked for beside a little turn of the camera.
+/// One kind of image: what is requested in addition to a small rotation of the camera.
 struct Way {
   const char* name;
   Json request;
-  bool tells_time;  ///< as a page does, so that images become smaller where they are slow
+  bool tells_time;  ///< report the time, as a page does, so that slow images become smaller
 };
 
 void measure(WebClient& client, const Way& way, int images) {

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a turn of the camera to the image of it, through `understudy view --web`, on the CT of an engine at 512^2.
+"""Time from a rotation of the camera to its image, through `understudy view --web`, on the CT of an engine at 512^2.
 
-A small client speaks WebSocket as the page does, one request at a time, and does not unpack images. Rows are
-NODES/WAY/median, late (95th percentile), bytes: lossless is PNG, jpeg JPEG of all pixels, moving what a page gets while
-the hand moves: as many pixels as 50 ms allow. Ways are measured in turn, a value is the median over the rounds.
+A small client speaks WebSocket as the page does, one request at a time, and does not decode images. Rows are
+NODES/WAY/median, late (95th percentile), cast, pack, bytes and pixels. lossless is PNG; jpeg is JPEG of all pixels; moving is
+what a page gets while the user drags: as many pixels as 50 ms allow. The ways are measured in turn; a value is the median
+over the rounds.
 """
 
 import json

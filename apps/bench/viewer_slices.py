@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The bundled viewer's slices on Mesa's llvmpipe: what a program that is not helped pays for the image of `raycast.py`."""
+"""The bundled viewer's slices on Mesa's llvmpipe: what the image of `raycast.py` costs a program without Understudy."""
 
 import json
 import os
@@ -9,11 +9,13 @@ from array import array
 
 import viewers
 
-FRAMES = 4  # timed; as many come before them
+FRAMES = 4  # timed frames; as many untimed ones come first
 
 
 def turned_upright(volume, turned, side):
-    """The viewer's z axis points up where the benchmark's y does: rows along x stay, y becomes z, and z minus y."""
+    """Rotates the volume, because the viewer's z axis points up where the benchmark's y does: x stays, y becomes z, and z
+    becomes -y.
+    """
     voxels = volume.read_bytes()
     with turned.open("wb") as file:
         for up in range(side):
@@ -28,7 +30,7 @@ def processor_seconds():
 
 
 def drawn(command, frames, background, screenshot):
-    """Processor time of so many frames, with all that comes before the first."""
+    """Returns the processor time of this number of frames, including everything before the first."""
     before = processor_seconds()
     subprocess.run([*command, "--frames", str(frames), "--background", *[background] * 3, "--screenshot", str(screenshot)],
                    stdout=subprocess.DEVNULL, check=True,
@@ -41,7 +43,9 @@ def colours(screenshot):
 
 
 def write_premultiplied(on_black, on_white, pixels, image):
-    """RGBA floats, rows bottom up. What white adds to black is what the volume lets through."""
+    """Writes RGBA floats, rows bottom up. The volume's transparency is the difference between the images on white and on
+    black.
+    """
     floats = array("f")
     for row in range(pixels - 1, -1, -1):
         for pixel in range(row * pixels, (row + 1) * pixels):
@@ -52,12 +56,14 @@ def write_premultiplied(on_black, on_white, pixels, image):
 
 
 def seconds_and_image(volume, scene, image):
-    """Of one frame; `scene` as raycast.py describes it to VTK. The image is written where raycast.cc can judge it."""
+    """Returns the seconds of one frame; `scene` is as described by raycast.py to VTK. Writes the image for raycast.cc to
+    judge.
+    """
     side, pixels = scene["size"][0], scene["pixels"]
     upright, table = image.with_name(f"upright.{side}x{side}x{side}"), image.with_suffix(".json")
     turned_upright(volume, upright, side)
     table.write_text(json.dumps({"knots": scene["knots"]}), encoding="utf-8")
-    diagonals = 2 / 3**0.5  # two edges
+    diagonals = 2 / 3**0.5  # two edges, in half diagonals
     command = [str(viewers.PROGRAMS / "understudy-viewer"), str(upright), "--offscreen", "--mode", "table", "--table",
                str(table), "--no-frame", "--azimuth", "30", "--elevation", "25", "--distance", f"{diagonals:.17g}",
                "--field-of-view", str(scene["angle"]), "--window-size", str(pixels), str(pixels)]

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A scene by one of VTK's two volume mappers, for comparison: run by /usr/bin/python3, which knows Debian's python3-vtk9.
-Writes an image of floats and prints how long a frame took. `raycast.py` and `understudy study` call it.
+"""Renders a scene with one of VTK's two volume mappers, for comparison; run by /usr/bin/python3, which has Debian's
+python3-vtk9.
 
-The scene is a JSON file: volume (raw), size, type (u8, u16 or f32), spacing, "knots" (control points: at between value_at_0 and value_at_1 as
-0 and 1, plain colour, and opacity of one unit_distance), sample_distance, eye, centre, up, angle, near, far, and pixels. VTK's box
-ends at the outermost voxels' centres, its images have 8 bits.
+Writes an image of floats and prints the time of a frame. Called by `raycast.py` and `understudy study`.
+
+The scene is a JSON file: volume (raw), size, type (u8, u16 or f32), spacing, "knots" (control points: at, where 0 is
+value_at_0 and 1 is value_at_1; plain colour; and opacity of one unit_distance), sample_distance, eye, centre, up, angle,
+near, far, and pixels. VTK's box ends at the centres of the outermost voxels; its images have 8 bits.
 """
 
 import argparse

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The prototype of a ray caster (the folder that raycast.py names), on a processor without AVX-512. Its own
-// program begins with its AVX-512 kernels; this one includes it as it is and times its kernel for AVX2 alone,
-// the same way and in the same words. Built by raycast.py, outside of this project's build.
+// Runs the prototype of a ray caster (in the folder that raycast.py names) on a processor without
+// AVX-512. The prototype's own program begins with its AVX-512 kernels; this program includes it
+// unchanged and times only its AVX2 kernel, in the same way and with the same output. Built by
+// raycast.py.
 //
-// Its kernels are templates, so nothing of those for AVX-512 is compiled unless its program is. That becomes a
-// template, too.
+// The kernels are templates, so the AVX-512 ones are compiled only if the prototype's main is. The macro
+// turns that main into a template, too.
 #define main(...)  \
   unused_status;   \
   template <class> \

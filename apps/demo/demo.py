@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""./run demo: a CT of an engine through two viewers, with and without render nodes under them.
+"""./run demo: shows the CT of an engine in two viewers, with and without render nodes.
 
 Writes out/demo/: images, difference maps, report.json and index.html. Prints the same figures as a table.
 """
@@ -19,13 +19,13 @@ FOLDER = viewers.OUT / "demo"
 MODES = {"rgba": "pre-classified voxels, fixed function", "table": "scalar voxels, 1-D table in GLSL",
          "core": "OpenGL 3.3 core profile"}
 FRAMES = 12
-ORBIT = 5  # degrees from each frame to the next
+ORBIT = 5  # degrees per frame
 ENGINE_SIZE = (256, 256, 110)
 
 
 @dataclass
 class Shot:
-    """One way to run a viewer, and what came of it."""
+    """One run of a viewer, and its results."""
     way: str
     image: Path
     frame_ms: float
@@ -39,14 +39,14 @@ class Shot:
 
 @dataclass
 class Scene:
-    """One viewer; the first shot is the bare viewer, which the others are held against."""
+    """One viewer; the first shot is the bare viewer, with which the others are compared."""
     name: str
     what: str
     shots: list
 
 
 def ways(names, report_stem):
-    """(name, prefix, report path) for each way to run; the bare viewer has neither prefix nor report."""
+    """Yields (name, prefix, report path) for each way to run; the bare viewer has neither prefix nor report."""
     nodes = {"embedded": [], "4 ranks": ["-n", "4"]}
     for name in names:
         if name == "bare":
@@ -107,7 +107,7 @@ def table(scenes):
 
 
 def summary(scenes):
-    """report.json: the figures of the table, and every run's own report."""
+    """Returns the content of report.json: the figures of the table, and the report of every run."""
     return {"volume": str(viewers.ENGINE),
             "scenes": [{"viewer": scene.name,
                         "runs": [{"run": shot.way, "image": shot.image.name, "frame_ms": shot.frame_ms,

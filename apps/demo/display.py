@@ -12,13 +12,13 @@ class VirtualDisplay:
 
     def __enter__(self):
         read, write = os.pipe()
-        # -noreset: a server that resets when its last client leaves refuses the next one now and then.
+        # -noreset: a server that resets when its last client leaves occasionally refuses the next one.
         self.server = subprocess.Popen(
             ["Xvfb", "-displayfd", str(write), "-screen", "0", "1024x768x24", "+extension", "GLX",
              "-nolisten", "tcp", "-noreset"],
             pass_fds=[write], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(write)
-        # The server writes its number when it is ready, and closes the pipe when it cannot start.
+        # The server writes its display number when it is ready, and closes the pipe if it cannot start.
         with os.fdopen(read) as number:
             display = number.readline().strip()
         if not display:

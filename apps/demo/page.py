@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The demo's page: one file with its images inside, so that it can be sent and kept."""
+"""The demo's page: one self-contained file that embeds its images, so that it can be sent and archived."""
 
 import base64
 from html import escape

@@ -17,7 +17,7 @@ OUT = ROOT / "out"
 ENGINE = "engine.256x256x110"
 ENGINE_FOLDER = Path("/usr/share/doc/tachyon/examples/scenes/vol")
 
-# The unmodified viewer asks for nothing of ours; these variables are its own and Mesa's.
+# Variables of the viewers and of Mesa, not of Understudy.
 SOFTWARE = {"LIBGL_ALWAYS_SOFTWARE": "1"}
 OSG = {"OSG_WINDOW": "0 0 512 512", "OSG_THREADING": "SingleThreaded"}
 
@@ -26,20 +26,20 @@ RUN_SECONDS = 600
 
 
 class ViewerFailed(RuntimeError):
-    """A viewer ended with an error; the message holds its command and its last lines."""
+    """A viewer ended with an error; the message contains its command and the end of its output."""
 
 
 def understudy(*options):
-    """The words in front of a viewer's command."""
+    """Returns the words that precede a viewer's command."""
     return [str(PROGRAMS / "understudy"), "run", *map(str, options), "--"]
 
 
 def engine_volume():
-    """The CT of an engine, 256 x 256 x 110 bytes, from Debian's tachyon-doc."""
+    """Returns the path of the CT of an engine, 256 x 256 x 110 bytes, from Debian's tachyon-doc."""
     installed = ENGINE_FOLDER / ENGINE
     if installed.exists():
         return installed
-    # Slim images leave /usr/share/doc out when they install a package: take the file from the package itself.
+    # Slim container images install packages without /usr/share/doc: take the file from the package itself.
     kept = OUT / "data"
     unpacked = kept / str(ENGINE_FOLDER).lstrip("/") / ENGINE
     if not unpacked.exists():
@@ -51,7 +51,7 @@ def engine_volume():
 
 
 def run(command, environment=None, seconds=RUN_SECONDS):
-    """Runs to the end; both outputs as text. Raises ViewerFailed."""
+    """Runs a command to its end; returns both outputs as text. Raises ViewerFailed if it fails."""
     done = subprocess.run([str(word) for word in command], env={**os.environ, **(environment or {})},
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=seconds,
                           stdin=subprocess.DEVNULL)
@@ -61,7 +61,7 @@ def run(command, environment=None, seconds=RUN_SECONDS):
 
 
 def bundled_viewer(prefix, volume, mode, frames, orbit, image, extra=()):
-    """Runs understudy-viewer off screen; the milliseconds of every frame it drew."""
+    """Runs understudy-viewer off screen; returns the milliseconds of every frame."""
     text = run([*prefix, PROGRAMS / "understudy-viewer", volume, "--offscreen", "--mode", mode, "--frames", frames,
                 "--orbit", orbit, "--screenshot", image, "--print-times", *extra], SOFTWARE)
     times = [float(ms) for ms in re.findall(r"^frame \d+: ([0-9.]+) ms$", text, re.MULTILINE)]
@@ -71,18 +71,20 @@ def bundled_viewer(prefix, volume, mode, frames, orbit, image, extra=()):
 
 
 def steady_median(times, settle=3):
-    """The median without the first frames, in which drivers compile and volumes travel."""
+    """Returns the median without the first frames, in which drivers compile and volumes are sent."""
     return statistics.median(times[settle:] or times)
 
 
 def osgvolume(volume, size):
-    """The command of OpenSceneGraph's volume viewer with its fixed-function technique."""
+    """Returns the command of OpenSceneGraph's volume viewer with its fixed-function technique."""
     return ["osgvolume", "--no-shader", "--replace-alpha-with-luminance",
             "--raw", *map(str, size), "1", "1", "little", str(volume)]
 
 
 def photograph_window(command, display, image):
-    """Runs a viewer that has no screenshot of its own until its window holds still, saves that, and ends it."""
+    """Runs a viewer that cannot save screenshots until its window stops changing, saves the window's image, and ends the
+    viewer.
+    """
     environment = {**os.environ, **SOFTWARE, **OSG, "DISPLAY": display}
     part = Path(image).with_suffix(".part.png")
     log = Path(image).with_suffix(".log")
@@ -111,8 +113,9 @@ def photograph_window(command, display, image):
 
 
 def osgvolume_frame_ms(prefix, volume, size, display, frames=20):
-    """Milliseconds a frame: osgvolume prints none, so a short run is taken from a longer one. Its view rests, and
-    images are cast nevertheless."""
+    """Returns the milliseconds of a frame. osgvolume prints none, so the time of a short run is subtracted from that of a
+    longer one. Its view does not change, so the reuse of unchanged images is disabled.
+    """
     def seconds(count):
         start = time.monotonic()
         run([*prefix, *osgvolume(volume, size)],
@@ -124,7 +127,7 @@ def osgvolume_frame_ms(prefix, volume, size, display, frames=20):
 
 
 def compare(a, b, image=None):
-    """{'max', 'rms', 'psnr'} of two images; psnr is None when they are equal."""
+    """Returns {'max', 'rms', 'psnr'} of two images; psnr is None if they are equal."""
     text = run([PROGRAMS / "understudy", "compare", a, b, *(["--map", image] if image else [])])
     found = dict(re.findall(r"^(max|RMS|PSNR) (\S+)", text, re.MULTILINE))
     psnr = float(found["PSNR"])

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""./run gallery [FOLDER]: volumes in files as `understudy render` shows them, in four kinds.
+"""./run gallery [FOLDER]: renders volumes in files with `understudy render`, as four kinds of image.
 
-The engine comes from Debian; FOLDER (../shared/data beside the checkout, where there is one) may hold others. Writes
-out/gallery/: images, index.html with all of them, and table.md with command lines, times and errors.
+The engine comes from Debian; FOLDER (default: ../shared/data beside the checkout) may contain others. Writes out/gallery/:
+images, index.html with all of them, and table.md with command lines, times and errors.
 """
 
 import json
@@ -22,7 +22,7 @@ FOLDER = viewers.OUT / "gallery"
 TABLES = (HERE / "tables").relative_to(viewers.ROOT)
 SIDE = 512
 FRAMES = 5
-FINE = 0.125  # the step of the images that errors are measured against
+FINE = 0.125  # step of the images that serve as references for the errors
 KINDS = {"iso": "iso-surfaces under a light", "dvr": "direct volume rendering", "both": "both in one image",
          "shaded": "direct volume rendering under a light"}
 
@@ -32,9 +32,9 @@ class Volume:
     name: str
     what: str
     file: str
-    view: tuple  # options of every kind
-    iso: tuple  # surfaces of its own image
-    within: tuple  # surfaces in the image that shows both
+    view: tuple  # options for all kinds
+    iso: tuple  # surfaces of the kind "iso"
+    within: tuple  # surfaces of the kind "both"
 
 
 VOLUMES = (
@@ -51,7 +51,7 @@ VOLUMES = (
 
 
 def options(volume, kind):
-    """What `understudy render` is asked for, but for the file and the image."""
+    """Returns the options of `understudy render`, without the file and the image."""
     def surfaces(chosen):
         return [word for surface in chosen for word in ("--surface", surface)]
 

@@ -26,17 +26,18 @@
 namespace understudy {
 namespace {
 
-/// For texels of one client on what counts as a machine: the ranks that share bricks with this one.
+/// Returns the memory for texels of one client on this rank's machine, that is, on all ranks that
+/// share bricks with this one.
 std::uint64_t room_on_machine(const compositor::Communicator& communicator,
                               const compositor::ClientLimits& limits, int neighbours) {
   const std::vector<int> machines = communicator.machines();
   const auto sharing = std::uint64_t(std::ranges::count(machines, machines[std::size_t(communicator.rank())]));
-  // Bricks take half as much again as texels.
+  // Bricks take 1.5 times the memory of the texels.
   const std::uint64_t available = compositor::available_memory() / 2 * sharing / std::uint64_t(neighbours);
   return std::min(available, limits.bytes_of_client * sharing);
 }
 
-/// As many descriptors as the system allows: each volume whose bricks are shared takes one.
+/// Raises the limit of descriptors to the maximum: each volume whose bricks are shared takes one.
 void raise_descriptor_limit() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
@@ -140,10 +141,10 @@ int run_rank(NodeOptions& options, int argc, char** argv) {
   MpiCommunicator communicator(argc, argv);
   const int neighbours = communicator.ranks_on_this_machine();
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  // Rounded up: cores that no rank uses are worse than two threads on some of them.
+  // Rounded up: idle cores are worse than two threads on some of them.
   const unsigned share = (cores + unsigned(neighbours) - 1) / unsigned(neighbours);
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, share);
-  // Mesa's software renderer would take all cores for each rank.
+  // Otherwise Mesa's software renderer would use all cores on each rank.
   setenv("LP_NUM_THREADS", fmt::format("{}", share).c_str(), 0);
   volume::glsl::TextureMemoryWish memory;
   memory.sharers = neighbours;
@@ -159,7 +160,7 @@ int run_rank(NodeOptions& options, int argc, char** argv) {
   options.balance.moved = [&](const MoveFigures& move) {
     if (communicator.rank() == 0) print_move(move);
   };
-  // Blocks move between ranks that divide one copy of a volume.
+  // Balancing moves blocks between ranks that divide one copy of a volume, so it requires sort-last.
   if (options.balance.balance != Balance::off) options.sort.sort = Sort::last;
   try {
     const ClientLimits limits = client_limits(neighbours, std::chrono::milliseconds(options.image_ms));

@@ -15,7 +15,7 @@ namespace understudy::python {
 namespace {
 
 constexpr int patience_with_nodes_ms = 60'000;
-/// Of scalars that are converted and sent at once.
+/// Size of the parts in which scalars are converted and sent.
 constexpr std::size_t bytes_at_once = std::size_t(16) << 20;
 
 class ArrayFile : public volume::VolumeFile {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A volume whose scalars lie in the memory of somebody else, and images of it.
+// A volume whose scalars are in memory owned by the caller, and images of it.
 #pragma once
 
 #include <memory>
@@ -16,28 +16,28 @@
 
 namespace understudy::python {
 
-/// Scalars tightly packed, x fastest, in native byte order. They outlive the volume, and do not change.
+/// Tightly packed scalars, x fastest, in native byte order. They must outlive the volume and must not change.
 struct Scalars {
   std::span<const std::byte> bytes;
   volume::FileDescription description;
 };
 
-/// The render nodes do not answer; the next image asks for them again.
+/// The render nodes do not answer; the next image tries to connect again.
 class NodesLost : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Not for two threads at once.
+/// Not thread-safe.
 class ArrayVolume {
  public:
-  /// Rendered in this process, or on the nodes behind `nodes`, a socket of `understudy serve`, for which it
-  /// waits. Throws NodesLost.
+  /// Renders in this process, or on the nodes behind `nodes`, a socket of `understudy serve`, for which
+  /// it waits. Throws NodesLost.
   explicit ArrayVolume(const Scalars& scalars, const std::string& nodes = {});
 
-  /// Premultiplied, with alpha. `control_points`, where it is not empty, is a transfer function as in a file,
-  /// in place of the named one. What `arguments` says of a file is not looked at. Throws NodesLost, or
-  /// std::exception with a sentence, as commands do.
+  /// Returns a premultiplied image with alpha. `control_points`, unless empty, is a transfer function in the
+  /// form of a file, and replaces the named one. Arguments that concern a file are ignored. Throws NodesLost,
+  /// or std::exception with a message, as commands do.
   launcher::RgbaImage render(const launcher::SceneArguments& arguments, const std::string& control_points = {});
 
  private:
@@ -47,8 +47,8 @@ class ArrayVolume {
 
   Scalars scalars_;
   std::string nodes_;
-  std::unique_ptr<compositor::RenderService> service_;  ///< null: nodes that were lost
-  std::optional<launcher::FileScene> loaded_;           ///< as it is with the service
+  std::unique_ptr<compositor::RenderService> service_;  ///< null after the nodes were lost
+  std::optional<launcher::FileScene> loaded_;           ///< the scene whose volume the service holds
   volume::TexelFigures figures_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// understudy._native: what understudy/__init__.py is made of. It takes plain values; what users see, with its
-// defaults and documents, is written there.
+// understudy._native, the implementation behind understudy/__init__.py. It takes plain values; the interface
+// that users see, with its defaults and documentation, is in __init__.py.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -24,7 +24,7 @@ namespace understudy::python {
 
 namespace {
 
-/// Keeps the array for as long as it is looked at.
+/// Holds a reference to the array while its data are in use.
 class Volume {
  public:
   Volume(py::array array, const std::array<double, 3>& spacing, const std::string& nodes)
@@ -46,7 +46,7 @@ class Volume {
       const std::scoped_lock lock(mutex_);
       image = volume_->render(arguments, control_points);
     }
-    // The pixels become the array's.
+    // The array takes ownership of the pixels.
     auto kept = std::make_unique<std::vector<float>>(std::move(image.rgba));
     const float* const pixels = kept->data();
     const py::capsule owner(kept.release(),
@@ -61,7 +61,7 @@ class Volume {
   }
 
   py::array array_;
-  std::mutex mutex_;  // threads of Python render one after the other
+  std::mutex mutex_;  // serializes rendering by Python threads
   std::optional<ArrayVolume> volume_;
 };
 

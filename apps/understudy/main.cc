@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// understudy: runs viewers with render nodes under them, and the tools around that.
+// understudy: runs viewers with render nodes, and the related tools.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -38,7 +38,7 @@
 namespace launcher = understudy::launcher;
 
 int main(int argc, char** argv) try {
-  // What follows the first "--" is the viewer's command and is not ours to interpret.
+  // Everything after the first "--" is the viewer's command and is not interpreted.
   const launcher::CommandLine line = launcher::split_at_double_dash(argc, argv);
   understudy::spu::rename_former_variables();
 
@@ -78,7 +78,7 @@ int main(int argc, char** argv) try {
     return launcher::usage_error;
   }
   try {
-    // The library takes them last to first, and without the program's name.
+    // CLI11 takes the arguments in reverse order, without the program's name.
     app.parse(std::vector<std::string>(configured.own.rbegin(), configured.own.rend() - 1));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);

@@ -129,7 +129,7 @@ void write_description(const std::string& path, const Options& options, const Sc
       {"opengl", {{"renderer", gl_text(GL_RENDERER)}, {"version", gl_text(GL_VERSION)}}},
   };
   std::ofstream file(path);
-  // A file name need not be UTF-8: replace what is not, rather than fail.
+  // File names may be invalid UTF-8: replace invalid bytes instead of failing.
   file << description.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
   file.close();
   if (!file)

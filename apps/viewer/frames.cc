@@ -44,7 +44,8 @@ void Frames::draw_next(Camera camera, int width, int height, const std::function
   glFinish();
   double time = milliseconds_since(start);
 
-  // Between drawing and swapping, while the back buffer is still defined; not part of the frame's time.
+  // Read between drawing and swapping, while the back buffer is still defined; not
+  // included in the frame's time.
   const bool wanted = finished() && !options_.screenshot.empty();
   if (wanted || !options_.screenshot_folder.empty()) {
     const Image image = read_back(width, height);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws frame after frame: orbit, times, screenshots and the description of the last frame.
-// The window and the off-screen loop both draw through this.
+// Draws frame after frame: orbit, times, screenshots and the description of the last frame. Used by both the
+// window and the off-screen loop.
 #pragma once
 
 #include <functional>
@@ -15,12 +15,12 @@ class Frames {
  public:
   Frames(const Options& options, Scene& scene) : options_(options), scene_(scene) {}
 
-  /// Draws the next frame and calls `present` to end it (swap). `camera` is turned by the orbit so far.
+  /// Draws the next frame and calls `present` to end it (swap). Rotates `camera` by the orbit so far.
   void draw_next(Camera camera, int width, int height, const std::function<void()>& present);
 
   bool finished() const { return options_.frames > 0 && drawn_ >= options_.frames; }
 
-  /// Prints the median of the frame times when they are printed. Call once, at the end.
+  /// Prints the median of the frame times if they are printed. Call once, at the end.
   void print_median() const;
 
  private:

@@ -11,9 +11,9 @@
 namespace viewer {
 
 void load_opengl_functions() {
-  glewExperimental = GL_TRUE;  // core profiles answer GLEW's extension query with an error
+  glewExperimental = GL_TRUE;  // in core profiles, GLEW's extension query is an error
   const GLenum result = glewInit();
-  // Without a window GLEW looks in vain for a GLX display, after it has loaded the OpenGL functions.
+  // Without a window, GLEW finds no GLX display, but has loaded the OpenGL functions by then.
   if (result != GLEW_OK && result != GLEW_ERROR_NO_GLX_DISPLAY)
     throw Error(
         ExitCode::no_opengl,

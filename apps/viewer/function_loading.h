@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenGL entry points for the current context.
+// Loads the OpenGL entry points of the current context.
 #pragma once
 
 namespace viewer {
 
-/// Loads them and prints which OpenGL this is. Throws Error (no_opengl) when the context is older than needed.
+/// Loads them and prints the OpenGL version. Throws Error (no_opengl) if the context is older than required.
 void load_opengl_functions();
 
 }  // namespace viewer

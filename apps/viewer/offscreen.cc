@@ -2,7 +2,7 @@
 #include "apps/viewer/offscreen.h"
 
 #include <GL/glew.h>
-// EGL after GLEW, which insists on being first.
+// EGL is included after GLEW, which must come first.
 #include <EGL/eglext.h>
 #include <fmt/format.h>
 
@@ -28,8 +28,8 @@ bool has_client_extension(std::string_view wanted) {
          (" " + std::string(extensions) + " ").find(fmt::format(" {} ", wanted)) != std::string::npos;
 }
 
-// Devices first: they reach a real GPU where there is one. Surfaceless is Mesa's; the default display may need
-// a server.
+// Devices first, because they can be a real GPU. The surfaceless platform is Mesa's; the default display may
+// require a display server.
 std::vector<EGLDisplay> candidate_displays() {
   std::vector<EGLDisplay> displays;
   const auto query_devices =
@@ -51,8 +51,8 @@ std::vector<EGLDisplay> candidate_displays() {
   return displays;
 }
 
-// eglChooseConfig puts deeper colours first: 10 bits would come before the 8 that a window has. No alpha where
-// nobody reads it, as in a window.
+// eglChooseConfig sorts deeper colours first: 10 bits would precede the 8 bits of a window. No alpha unless it
+// is needed, as in a window.
 EGLConfig choose_config(EGLDisplay display, EGLint surface_type, EGLint alpha_bits) {
   const EGLint wanted[] = {EGL_SURFACE_TYPE,
                            surface_type,
@@ -100,8 +100,8 @@ EGLContext create_context(EGLDisplay display, EGLConfig config, ModeKind mode) {
 Offscreen::Offscreen(const Options& options, int width, int height) {
   eglBindAPI(EGL_OPENGL_API);
   const std::vector<EGLDisplay> displays = candidate_displays();
-  // A pbuffer anywhere is preferred to a framebuffer object anywhere: it has an end of frame that others can
-  // see.
+  // Prefer a pbuffer on any display to a framebuffer object: the end of its frames
+  // (eglSwapBuffers) is visible to others.
   for (const OffscreenSurface kind : {OffscreenSurface::pbuffer, OffscreenSurface::framebuffer}) {
     if (options.surface != OffscreenSurface::any && options.surface != kind) continue;
     for (EGLDisplay display : displays) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A context without a window: EGL on a device or surfaceless platform, no display server needed.
+// A context without a window: EGL on a device or surfaceless platform, without a display server.
 //
-// Frames are drawn into a pbuffer surface and ended by eglSwapBuffers where the platform offers pbuffers,
-// otherwise into a framebuffer object and ended by glFinish.
+// If the platform offers pbuffers, frames are drawn to a pbuffer and ended by eglSwapBuffers; otherwise they
+// are drawn to a framebuffer object and ended by glFinish.
 #pragma once
 
 #include <EGL/egl.h>
@@ -35,7 +35,7 @@ class Offscreen {
   std::array<unsigned, 2> renderbuffers_{};  ///< colour, depth
 };
 
-/// The whole program off screen: draws options.frames frames of `volume`.
+/// Runs the program off screen: draws options.frames frames of `volume`.
 void run_offscreen(const Options& options, Volume volume);
 
 }  // namespace viewer

@@ -58,7 +58,7 @@ void blend_with(Operator op) {
   const Blend& blend = blend_of(op);
   glEnable(GL_BLEND);
   glBlendFunc(blend.source, blend.destination);
-  // Before OpenGL 1.4 there was nothing but addition; whoever adds need not ask.
+  // Before OpenGL 1.4, addition was the only equation, so `over` does not set it.
   if (op != Operator::over) glBlendEquation(blend.equation);
 }
 

@@ -24,7 +24,7 @@ std::string preset_list() {
   return list;
 }
 
-// CLI11 validators answer with a message, or with nothing when the text is right.
+// CLI11 validators return a message, or an empty string if the text is valid.
 const CLI::Validator is_preset(
     [](std::string& text) {
       return find_preset(text) ? std::string()
@@ -32,7 +32,7 @@ const CLI::Validator is_preset(
     },
     "PRESET");
 
-// CLI::Range lets NaN pass.
+// Unlike CLI::Range, rejects NaN.
 CLI::Validator number_between(double low, double high) {
   return CLI::Validator(
       [low, high](std::string& text) {
@@ -44,7 +44,7 @@ CLI::Validator number_between(double low, double high) {
       fmt::format("FLOAT in [{} - {}]", low, high));
 }
 
-/// What options say in words, until they are looked up.
+/// Options given as words, before they are converted.
 struct Texts {
   std::string mode = "table", op = "over", preset = "engine", table, type, surface = "any", step = "whole";
   VolumeSize size{};

@@ -26,7 +26,7 @@ struct Options {
   Operator op = Operator::over;
   int slices = 0;  ///< across the box's diagonal; 0: one per finest voxel edge
   const Preset* preset = nullptr;
-  std::shared_ptr<const PresetFile> preset_file;  ///< where the preset comes from, if not built in
+  std::shared_ptr<const PresetFile> preset_file;  ///< origin of the preset, if it is not built in
   bool frame_and_axes = true;
   bool opaque_ball = false;
   bool second_volume = false;
@@ -48,8 +48,8 @@ struct Options {
   bool print_times = false;
 };
 
-/// Fills `options`; nullopt to go on, otherwise the exit status (after --help, or after a message about a
-/// mistake).
+/// Fills `options`. Returns nullopt to continue, otherwise the exit status (after --help,
+/// or after an error message).
 std::optional<int> parse_command_line(int argc, const char* const* argv, Options& options);
 
 }  // namespace viewer

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A transfer function of the user's own, in a file:
 //   {"knots": [{"at": 0.2, "colour": [1, 0.5, 0.2], "opacity": 0}, ...]}
-// with `at` a texel value in [0,1]; what a preset says, a control point says (see transfer_function.h).
+// with `at` a texel value in [0,1]; colours and opacities are those of presets (see transfer_function.h).
 #pragma once
 
 #include <string>
@@ -13,13 +13,13 @@ namespace viewer {
 
 class PresetFile {
  public:
-  /// Throws Error naming the file, the control point, and what is wrong with it.
+  /// Throws Error with the file, the control point, and what is wrong with it.
   explicit PresetFile(const std::string& path);
   PresetFile(const PresetFile&) = delete;
   PresetFile& operator=(const PresetFile&) = delete;
   ~PresetFile() = default;
 
-  /// Good as long as this.
+  /// Valid as long as this object.
   const Preset& preset() const { return preset_; }
 
  private:

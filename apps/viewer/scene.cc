@@ -58,7 +58,7 @@ void Scene::set_preset(const Preset& preset) {
   table_ = make_table(preset, opacity_exponent(), volume_.not_finite > 0);
   mode_->set_table(colours_for(op_, table_));
   if (!second_) return;
-  // Of a preset from a file the next is the first.
+  // The successor of a preset from a file is the first built-in one.
   const auto built_in = std::ranges::find(presets(), preset.name, &Preset::name);
   const auto next = built_in == presets().end()
                         ? std::size_t(0)
@@ -78,7 +78,7 @@ void Scene::draw_volumes(DrawnFrame& frame) {
     draw(*mode_, table_, 1, {0, 0, 0});
     return;
   }
-  // Each half as large, they meet in the box's centre, corner to corner.
+  // Both have half the size, and meet corner to corner in the box's centre.
   const auto draw_first = [&] { draw(*mode_, table_, 0.5, -0.25 * box_.edges); };
   const auto draw_second = [&] { draw(*second_, second_table_, 0.5, 0.25 * box_.edges); };
   const bool second_is_farther = dot(frame.stack.normal, box_.edges) > 0;
@@ -98,7 +98,7 @@ void Scene::draw_back_to_front(DrawnFrame& frame) {
   glEnable(GL_DEPTH_TEST);
   if (!opaque_.triangles.empty()) mode_->draw_opaque(opaque_, frame.matrices);
 
-  // Slices are hidden by what is solid, but never by each other.
+  // Solid geometry hides slices, but slices never hide each other.
   glDepthMask(write_depth_ ? GL_TRUE : GL_FALSE);
   blend_with(op_);
   draw_volumes(frame);
@@ -110,7 +110,8 @@ void Scene::draw_front_to_back(DrawnFrame& frame) {
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glEnable(GL_DEPTH_TEST);
-  // What is solid hides slices by its depth, and is seen through those before it: its colour comes after them.
+  // Solid geometry hides slices by its depth, and is visible through the slices before it: its
+  // colour is drawn after them.
   glDepthFunc(GL_LEQUAL);
   if (!opaque_.triangles.empty()) {
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The volume and everything around it, drawn into the current framebuffer of the current context.
+// Draws the volume and everything around it to the current framebuffer of the current context.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace viewer {
 
-/// What stays the same about the volume over all frames; kept when the texels have gone to OpenGL.
+/// Properties of the volume that are the same in all frames; kept after the texels are passed to OpenGL.
 struct VolumeFacts {
   std::string file;
   VolumeSize size{};
@@ -24,11 +24,11 @@ struct VolumeFacts {
   std::int64_t not_finite = 0;
 };
 
-/// Where one volume was drawn, and in which colours.
+/// Position and colours of one drawn volume.
 struct DrawnVolume {
   Vec3 scale;  ///< from texture to object space, before `translate`
   Vec3 translate;
-  Table colours;  ///< as the operator takes them
+  Table colours;  ///< as converted for the operator
 };
 
 /// Everything that determined one frame's image.
@@ -43,10 +43,10 @@ struct DrawnFrame {
 
 class Scene {
  public:
-  /// Needs the mode's context current. `volume` is taken over. Prints one line about the volume, and warnings.
+  /// The mode's context must be current. Takes `volume` over. Prints one line about the volume, and warnings.
   Scene(const Options& options, Volume volume);
 
-  /// Clears and draws; does not swap. Throws Error (no_opengl) when OpenGL reports an error.
+  /// Clears and draws; does not swap. Throws Error (no_opengl) if OpenGL reports an error.
   DrawnFrame draw(const Camera& camera, int width, int height);
 
   void set_preset(const Preset& preset);
@@ -75,7 +75,7 @@ class Scene {
   bool write_depth_;
   OpaqueGeometry opaque_;
   std::unique_ptr<Mode> mode_;
-  std::unique_ptr<Mode> second_;  ///< null: there is one volume
+  std::unique_ptr<Mode> second_;  ///< null: there is only one volume
   const Preset* preset_ = nullptr;
   Table table_{};
   Table second_table_{};

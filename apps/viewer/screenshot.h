@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images out of the framebuffer and into PNG files.
+// Reads images from the framebuffer and writes them to PNG files.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@ struct Image {
   std::vector<std::uint8_t> rgb;  ///< top row first
 };
 
-/// The current context's read buffer (the back buffer of a window).
+/// Reads the current context's read buffer (the back buffer of a window).
 Image read_back(int width, int height);
 
-/// Throws Error (bad_file) when the file cannot be written.
+/// Throws Error (bad_file) if the file cannot be written.
 void write_png(const Image& image, const std::string& path);
 
 }  // namespace viewer

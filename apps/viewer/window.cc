@@ -2,7 +2,7 @@
 #include "apps/viewer/window.h"
 
 #include <GL/glew.h>
-// GLEW insists on being before every other OpenGL header.
+// GLEW must be included before every other OpenGL header.
 #include <GL/freeglut.h>
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ constexpr int wheel_up_button = 3;
 constexpr int wheel_down_button = 4;
 constexpr double zoom_steps_per_pixel = 0.05;
 
-// freeglut cannot go on after this: when its handler returns it works on a display that is not there.
+// freeglut cannot continue after this error: when its handler returns, it uses a display that does not exist.
 [[noreturn]] void leave_without_display(const char* format, va_list arguments, void*) {
   char reason[256];
   std::vsnprintf(reason, sizeof reason, format, arguments);
@@ -60,7 +60,7 @@ class Window {
   void press_button(int button, int state, int x, int y);
   void drag(int x, int y);
 
-  // Exceptions must not pass through freeglut, which is C.
+  // Exceptions must not pass through freeglut, which is written in C.
   template <typename Action>
   static void guarded(void* self, Action action) {
     auto* window = static_cast<Window*>(self);
@@ -110,13 +110,13 @@ void Window::open() {
       this);
   glutMotionFuncUcall(
       [](int x, int y, void* self) { guarded(self, [=](Window& window) { window.drag(x, y); }); }, this);
-  // The scene's OpenGL objects have to go while their context is still there.
+  // The scene's OpenGL objects must be deleted while their context exists.
   glutCloseFuncUcall([](void* self) { static_cast<Window*>(self)->scene_.reset(); }, this);
 }
 
 void Window::draw() {
   if (frames_->finished()) return;
-  // A window can be drawn together until nothing is left of it.
+  // A window can be shrunk to zero size.
   const int width = std::max(glutGet(GLUT_WINDOW_WIDTH), 1), height = std::max(glutGet(GLUT_WINDOW_HEIGHT), 1);
   frames_->draw_next(camera_, width, height, [] { glutSwapBuffers(); });
   if (frames_->finished()) {

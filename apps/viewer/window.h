@@ -6,8 +6,8 @@
 
 namespace viewer {
 
-/// The whole program in a window: until options.frames frames are drawn, or the user leaves.
-/// Throws Error; without a display the program ends with ExitCode::no_opengl.
+/// Runs the program in a window until options.frames frames are drawn, or the user quits. Throws Error; without
+/// a display, the program exits with ExitCode::no_opengl.
 void run_window(const Options& options, Volume volume);
 
 }  // namespace viewer

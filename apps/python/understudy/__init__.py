@@ -7,14 +7,14 @@
     image = understudy.render(scan, transfer_function="ct", camera=(30, 20, 4), size=(800, 600))
 
     volume = understudy.Volume(scan, spacing=(0.5, 0.5, 1.0))
-    for azimuth in range(0, 360, 5):                    # the texels are taken once
+    for azimuth in range(0, 360, 5):                    # the texels are converted once
         frame = volume.render(camera=(azimuth, 20, 4), surfaces=["40%,#e8c090,0.5"], light="all")
 
     report = understudy.run(["osgvolume", "scan.nrrd"], nodes=4)
     print(report.frames_substituted, report.time_ms["substituted_median"])
 
-Images are float32 arrays of shape (height, width, 4): premultiplied RGBA, the top row first, without rounding. What is
-wrong is said by ValueError, in the words of the command line; lost render nodes by NodesLost.
+Images are float32 arrays of shape (height, width, 4): premultiplied RGBA, the top row first, without rounding. Invalid
+arguments raise ValueError, with the message of the command line; lost render nodes raise NodesLost.
 """
 
 import contextlib
@@ -43,12 +43,12 @@ _CHOICES = {
 }
 
 
-#: The render nodes do not answer, or could not be started. The next image asks for them again.
+#: The render nodes do not answer, or could not be started. The next image tries to connect again.
 NodesLost = _native.NodesLost
 
 
 def transfer_functions():
-    """The names of the built-in transfer functions."""
+    """Returns the names of the built-in transfer functions."""
     return _native.transfer_functions()
 
 
@@ -57,7 +57,9 @@ def _words(numbers, separator=","):
 
 
 def _control_points(table, value_range):
-    """A transfer function's JSON, of a dict as in a file or of an (N, 4) array of plain RGBA over the value range."""
+    """Returns the JSON of a transfer function: of a dict, as in a file, or of an (N, 4) array of plain RGBA over the value
+    range.
+    """
     if isinstance(table, dict):
         try:
             return json.dumps(table, allow_nan=False, default=float)
@@ -76,14 +78,14 @@ def _control_points(table, value_range):
 
 
 class Volume:
-    """A volume of scalars, of which images are made.
+    """A volume of scalars that can be rendered.
 
     array    shape (z, y, x), of any integer or float type. A C-contiguous array in native byte order is not copied, and must
-             not change while the volume is used; others are copied once.
+             not change while the volume is in use; others are copied once.
     spacing  distances between voxels along x, y and z, in any unit.
-    nodes    a group of render nodes (Nodes); None: this process, on all cores.
+    nodes    a group of render nodes (Nodes); None: render in this process, on all cores.
 
-    Integers of 8 and 16 bits are kept as they are, all other types as float32. NaN is transparent.
+    Integers of 8 and 16 bits keep their type, all other types become float32. NaN is transparent.
     """
 
     def __init__(self, array, spacing=(1.0, 1.0, 1.0), nodes=None):
@@ -102,28 +104,28 @@ class Volume:
         if not (nodes is None or isinstance(nodes, Nodes)):
             raise ValueError(f"nodes={nodes!r}: give understudy.Nodes(RANKS), or None")
         self.shape = array.shape
-        self._nodes = nodes  # which live as long as this volume
+        self._nodes = nodes  # keeps the nodes alive as long as this volume
         self._native = _native.Volume(array, [float(distance) for distance in spacing], "" if nodes is None else nodes.socket)
 
     def render(self, transfer_function="grey", camera=(30, 20, 4), size=(512, 512), step=1.0, *, value_range=None,
                operator="over", method="post-classified", tolerance=1e-3, termination=5e-6, surfaces=(), show_volume=True,
                light="", light_from=None, material=None, texels="", texel_range=None):
-        """An image of the volume: float32, (height, width, 4), premultiplied RGBA, the top row first.
+        """Returns an image of the volume: float32, (height, width, 4), premultiplied RGBA, the top row first.
 
         transfer_function  a built-in name (transfer_functions()), a path to a JSON file, such a file as a dict, or an (N, 4)
                            array of plain RGBA over `value_range`, whose alpha is the opacity of one voxel's length
         camera             azimuth and elevation in degrees, distance in half diagonals of the volume, and, if given, roll
         size               (width, height) in pixels
-        step               between samples, in voxels
-        value_range        (low, high) of an array's ends, in values of the volume; None: the volume's least and greatest value
+        step               distance between samples, in voxels
+        value_range        values of the volume at the first and last row of an array; None: the volume's minimum and maximum
         operator           "over", "max", "add" or "first-hit"
         method             "post-classified", "pre-integrated" or "adaptive" (steps divided until each is within `tolerance`)
-        termination        a ray ends where less than this shows through
+        termination        a ray ends where its transparency falls below this value
         surfaces           iso-surfaces: a value, or "VALUE[,COLOUR[,OPACITY]]" as "40%,#e8c090,0.5"
-        show_volume        False: surfaces alone
+        show_volume        False: only the surfaces
         light              "all" or "surfaces"; the light is at the eye unless light_from=(azimuth, elevation)
         material           (ambient, diffuse, specular, shininess)
-        texels             "u8", "u16" or "f32": what is kept of each scalar; texel_range=(low, high): the values these span
+        texels             "u8", "u16" or "f32": type that scalars are converted to; texel_range=(low, high): the values it spans
         """
         for name, value in {"operator": operator, "method": method, "light": light, "texels": texels}.items():
             if value not in _CHOICES[name]:
@@ -152,7 +154,9 @@ class Volume:
 
 def render(array, transfer_function="grey", camera=(30, 20, 4), size=(512, 512), step=1.0, *, spacing=(1.0, 1.0, 1.0), nodes=None,
            **settings):
-    """One image of an array: Volume(array, spacing, nodes).render(…). `nodes` may be a number of ranks, for this image alone."""
+    """Returns one image of an array: Volume(array, spacing, nodes).render(…). `nodes` may also be a number of ranks, which are
+    started for this image only.
+    """
     with contextlib.ExitStack() as stack:
         if nodes is not None and not isinstance(nodes, Nodes):
             ranks = operator_module.index(nodes)
@@ -161,14 +165,16 @@ def render(array, transfer_function="grey", camera=(30, 20, 4), size=(512, 512),
 
 
 def over(image, background=(0.0, 0.0, 0.0)):
-    """An image over an opaque colour, as uint8 RGB: what Pillow and matplotlib save."""
+    """Composites an image over an opaque colour; returns uint8 RGB, which Pillow and matplotlib can save."""
     image = numpy.asarray(image)
     colours = image[..., :3] + (1 - image[..., 3:]) * numpy.asarray(background, dtype=numpy.float32)
     return (numpy.clip(colours, 0, 1) * 255 + 0.5).astype(numpy.uint8)
 
 
 def program(name="understudy"):
-    """The path of an installed program: UNDERSTUDY_BIN, the folder of programs beside this module, or PATH."""
+    """Returns the path of an installed program: in UNDERSTUDY_BIN, in the folder of programs beside this module, or on
+    PATH.
+    """
     beside = [parent / "bin" / name for parent in Path(__file__).resolve().parents]
     chosen = [Path(os.environ["UNDERSTUDY_BIN"]) / name] if "UNDERSTUDY_BIN" in os.environ else []
     for path in chosen + beside:
@@ -186,7 +192,7 @@ class Nodes:
         with understudy.Nodes(4) as nodes:
             volume = understudy.Volume(scan, nodes=nodes)
 
-    They end with close(), at the end of the `with` block, or with this process.
+    The nodes end with close(), at the end of the `with` block, or with this process.
     """
 
     def __init__(self, ranks, hostfile=None, options=()):
@@ -197,7 +203,7 @@ class Nodes:
         words += ["--hostfile", os.fspath(hostfile)] if hostfile else []
         log_path = Path(self._folder.name) / "log"
         with log_path.open("wb") as log:
-            # Apart from the terminal's Ctrl-C, which Python may go on after.
+            # In a session of their own, because Python may continue after the terminal's Ctrl-C.
             self._process = subprocess.Popen(words + list(options), stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                              start_new_session=True)
         self._end = weakref.finalize(self, Nodes._ended, self._process, self._folder)
@@ -232,7 +238,7 @@ class Nodes:
 
 
 class Report(dict):
-    """A run's figures, by the keys of docs/report.md, also as attributes where a dict has none of that name:
+    """The figures of a run, by the keys of docs/report.md. Keys are also attributes, unless dict has an attribute of that name:
     report.volumes[0].draws.substituted."""
 
     def __getattr__(self, name):
@@ -243,7 +249,7 @@ class Report(dict):
 
 
 def read_report(path):
-    """The report that `understudy run --report` or `understudy render --report` wrote."""
+    """Reads a report written by `understudy run --report` or `understudy render --report`."""
     return json.loads(Path(path).read_text(encoding="utf-8"), object_hook=Report)
 
 
@@ -253,8 +259,8 @@ def run(command, nodes=0, options=(), check=True, **more):
     command  the viewer and its arguments
     nodes    MPI ranks; 0: volumes are rendered inside the viewer
     options  further options of `understudy run`, as ["--error", "1/255"]
-    check    raise subprocess.CalledProcessError where the viewer ends with another status than 0
-    more     for subprocess.run(), as cwd and env
+    check    raise subprocess.CalledProcessError if the viewer's exit status is not 0
+    more     arguments of subprocess.run(), such as cwd and env
     """
     with tempfile.TemporaryDirectory(prefix="understudy-") as folder:
         path = Path(folder) / "report.json"

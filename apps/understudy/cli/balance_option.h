@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `--balance` of `run`, `replay`, `render`, `study`, `view` and `serve`: who of the nodes gets how much of a
-// volume.
+// `--balance` of `run`, `replay`, `render`, `study`, `view` and `serve`: load balancing, that is, how much
+// of a volume each node gets.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `--error` and `--time` of `render`, as `run` has them.
+// `--error` and `--time` of `render`, with the same values as those of `run`.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,7 +14,7 @@ struct BudgetArguments {
   std::string time = "none";
 };
 
-/// After `--step`, which they exclude.
+/// Call it after `--step` has been added, which both options exclude.
 void add_budget_options(CLI::App& subcommand, BudgetArguments& arguments);
 
 spu::BudgetAsked budget_asked(const BudgetArguments& arguments, bool may_halve);

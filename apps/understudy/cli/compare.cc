@@ -71,7 +71,7 @@ RgbaImage difference_map(const RgbaImage& a, const RgbaImage& b) {
 
 std::string difference_text(const Difference& difference) {
   const std::string psnr = std::isinf(difference.psnr()) ? "inf" : fmt::format("{:.2f}", difference.psnr());
-  // Errors of float frames lie far below the fourth decimal: they are printed with an exponent.
+  // Errors of float images are far below the fourth decimal, so they are printed with an exponent.
   const auto number = [](double value) {
     return value == 0 || value >= 1e-3 ? fmt::format("{:.4f}", value) : fmt::format("{:.2e}", value);
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy compare A B`: how far two images are apart.
+// `understudy compare A B`: the difference between two images.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,8 +10,7 @@
 
 namespace understudy::launcher {
 
-/// On the scale where 1 is full intensity, over red, green and blue, and over alpha where either image has
-/// some.
+/// On a scale where 1 is full intensity, over red, green and blue, and over alpha if either image has alpha.
 struct Difference {
   double max = 0;
   double rms = 0;
@@ -19,13 +18,14 @@ struct Difference {
   double psnr() const;
 };
 
-/// Throws std::runtime_error naming both sizes when they differ, and the pixel when a value is not a number.
+/// Throws std::runtime_error that names both sizes if they differ, or the pixel if a value is not finite.
 Difference difference(const RgbaImage& a, const RgbaImage& b);
 
-/// The largest difference of a pixel's components as a shade of grey; white is the largest of the image.
+/// Returns a map of the largest difference of each pixel's components as grey; white is the
+/// largest difference of the image.
 RgbaImage difference_map(const RgbaImage& a, const RgbaImage& b);
 
-/// The three lines that `compare` prints.
+/// Returns the three lines that `compare` prints.
 std::string difference_text(const Difference& difference);
 
 void add_compare(CLI::App& app, std::function<int()>& chosen);

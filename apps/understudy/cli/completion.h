@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy completion SHELL` and `understudy manual`: what is installed beside the program, from the options
-// that it has.
+// `understudy completion SHELL` and `understudy manual`: generate shell completion and the manual page, which
+// are installed with the program, from its options.
 #pragma once
 
 #include <CLI/CLI.hpp>

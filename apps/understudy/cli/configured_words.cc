@@ -16,10 +16,10 @@
 namespace understudy::launcher {
 namespace {
 
-/// Empty: it has none.
+/// Returns the environment variable of the option; empty if it has none.
 std::string variable_of(const std::string& name) {
   for (const spu::OptionText& option : spu::option_table()) {
-    // As "-n,--nodes".
+    // For example "-n,--nodes".
     const std::string_view flag = option.flag;
     if (flag.substr(flag.rfind(',') + 1) == "--" + name) return option.environment;
   }
@@ -48,7 +48,7 @@ const CLI::Option& option_of(const CLI::App& run, const ConfiguredOption& config
                                        meant.empty() ? "" : fmt::format("; did you mean {}?", meant)));
 }
 
-/// As --name, --name=value, -n or -nvalue.
+/// Returns whether `words` give the option, as --name, --name=value, -n or -nvalue.
 bool gives(const std::vector<std::string>& words, const CLI::Option& option) {
   return std::ranges::any_of(words, [&](const std::string& word) {
     const auto is_long = [&](const std::string& name) {
@@ -66,7 +66,7 @@ bool is_switch(const CLI::Option& option) {
   return option.get_items_expected_max() == 0;
 }
 
-/// None for a switch that is off. Throws std::runtime_error.
+/// Returns the words that give the option; none for a switch that is off. Throws std::runtime_error.
 std::vector<std::string> words_of(const ConfiguredOption& configured, const CLI::Option& option) {
   if (!is_switch(option)) return {fmt::format("--{}={}", configured.name, configured.value)};
   if (!configured.is_true_or_false)

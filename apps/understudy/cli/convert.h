@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy convert VOLUME -o NAME.uvol`: makes a hierarchical volume.
+// `understudy convert VOLUME -o NAME.uvol`: converts a volume to a hierarchical one.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,7 +10,7 @@
 
 namespace understudy::launcher {
 
-/// What the command prints of the file: its size, and the error of each level.
+/// Returns what the command prints about the file: its size, and the error of each level.
 std::string figures_text(const volume::HierarchyFigures& figures);
 
 void add_convert(CLI::App& app, std::function<int()>& chosen);

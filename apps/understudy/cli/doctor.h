@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy doctor`: what works on this machine, one line each, with the fix where it does not.
+// `understudy doctor`: prints what works on this machine, one line each, with a fix for what does not.
 #pragma once
 
 #include <CLI/CLI.hpp>

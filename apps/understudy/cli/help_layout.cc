@@ -33,14 +33,14 @@ const Heading headings[] = {
       "print-times"}},
 };
 
-/// Characters of UTF-8.
+/// Returns the number of UTF-8 characters.
 std::size_t width(std::string_view text) {
   return std::size_t(
       std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-/// `text` broken between words; lines but the first begin with `indent` spaces, and the first has `used`
-/// columns already. Lines that the text breaks itself stay broken.
+/// Wraps `text` between words. Lines after the first are indented by `indent` spaces; `used` columns of the
+/// first are taken already. Line breaks in the text are kept.
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t used) {
   std::string out;
   std::istringstream lines{std::string(text)};
@@ -64,7 +64,7 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t used)
   return out;
 }
 
-/// A name in the left column, what it is beside it.
+/// Formats a name in the left column and its description beside it.
 std::string row(const std::string& name, const std::string& description, std::size_t column) {
   std::string left = "  " + name;
   if (description.empty()) return left + "\n";
@@ -80,7 +80,7 @@ std::string row(const std::string& name, const std::string& description, std::si
 
 std::string HelpLayout::make_group(std::string heading, bool is_positional,
                                    std::vector<const CLI::Option*> options) const {
-  // The library puts an empty line behind each group of options, and another before each.
+  // CLI11 puts an empty line both before and after each group of options.
   std::string text = CLI::Formatter::make_group(heading, is_positional, std::move(options));
   const bool first = is_positional || heading == "Options";
   return first ? text : text.substr(1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How help is printed: options in a column of 30, what they do beside it, no line longer than 100 columns.
+// Layout of the help: options in a column of 30, their descriptions beside it, no line longer than 100 columns.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,7 +9,7 @@
 
 namespace understudy::launcher {
 
-/// For CLI::App::formatter(); subcommands that are added afterwards take it over.
+/// For CLI::App::formatter(); subcommands that are added afterwards inherit it.
 class HelpLayout : public CLI::Formatter {
  public:
   static constexpr std::size_t columns = 100;
@@ -22,7 +22,7 @@ class HelpLayout : public CLI::Formatter {
   std::string make_footer(const CLI::App* app) const override;
 };
 
-/// Puts the options of all of `app`'s subcommands under the headings of one table; hidden ones stay hidden.
+/// Groups the options of all subcommands of `app` under the headings of one table; hidden options stay hidden.
 void group_options(CLI::App& app);
 
 }  // namespace understudy::launcher

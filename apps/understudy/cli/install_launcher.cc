@@ -29,13 +29,13 @@ struct InstallArguments {
 
 constexpr std::string_view mark = "-understudy";
 
-/// Where the entry of a viewer goes whose own is named `name`.
+/// Returns the path of the entry that is made for the viewer's own entry `name`.
 fs::path place_of(const std::string& name) {
   return application_folders().front() / fmt::format("{}{}.desktop", name, mark);
 }
 
 int remove(const std::string& viewer) {
-  // The viewer's own entry may have gone.
+  // The viewer's own entry may have been removed.
   const auto entry = find_desktop_entry(viewer);
   const auto made = find_desktop_entry(viewer + std::string(mark));
   const fs::path place = entry ? place_of(entry->stem()) : made ? *made : place_of(viewer);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy key FILE`: makes the key by which a user or a server proves who it is.
+// `understudy key FILE`: makes a key pair, with which a user or a server authenticates.
 #pragma once
 
 #include <CLI/CLI.hpp>

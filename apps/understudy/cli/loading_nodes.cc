@@ -21,7 +21,7 @@
 namespace understudy::launcher {
 namespace {
 
-/// Large volumes on busy machines take their time.
+/// Large volumes take long on busy machines.
 constexpr std::chrono::minutes patience{10};
 
 ServiceMaker linked_to(const std::string& address) {
@@ -64,7 +64,7 @@ bool ranks_are_here(const LoadingNodes& arguments) {
 std::vector<std::string> with_loading_nodes(
     const LoadingNodes& arguments,
     const std::function<void(const ServiceMaker& make, const std::stop_token& stop)>& job) {
-  Placement placement;  // without ranks: in this process
+  Placement placement;  // no ranks: render in this process
   if (arguments.connect.empty())
     placement = placement_of({arguments.nodes, arguments.hostfile}, current_environment());
   if (placement.ranks == 0 && arguments.choices.backend != "cpu")

@@ -16,16 +16,16 @@ namespace {
 
 constexpr std::uint64_t no_limit = std::numeric_limits<std::uint64_t>::max();
 
-/// Of a rank that has no volume: program, MPI, threads.
+/// Memory of a rank without a volume: program, MPI, threads.
 constexpr std::uint64_t resident_bytes = std::uint64_t(40) << 20;
-/// The addresses that these take are many more.
+/// Address space that these take, which is much larger.
 constexpr std::uint64_t address_bytes = std::uint64_t(1) << 30;
-/// Of an image, its copies on their way to rank 0, and what is kept for each ray.
+/// Bytes per pixel of an image, of its copies on their way to rank 0, and of the state of each ray.
 constexpr std::uint64_t bytes_of_pixel = 64;
-/// Tables of segments, and images to compare.
+/// For pre-integration tables, and images that are compared to choose settings.
 constexpr std::uint64_t bytes_of_settings = std::uint64_t(64) << 20;
 
-/// What is left of the process's limit on addresses, which ranks inherit.
+/// Returns the address space left for a volume under the process's limit, which ranks inherit.
 std::uint64_t addresses_for_volume() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return no_limit;
@@ -33,7 +33,8 @@ std::uint64_t addresses_for_volume() {
   return std::max(all / 4, all - std::min(all, address_bytes));
 }
 
-/// Some of it stays free for other programs, and for the file's pages.
+/// Returns a rank's share of the available memory. A quarter stays free for other programs,
+/// and for the file's pages.
 std::uint64_t share_of_machine(int ranks) {
   const std::uint64_t available = compositor::available_memory();
   const std::uint64_t usable = compositor::usable_memory();

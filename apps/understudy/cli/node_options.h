@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options of commands that start nodes: `--exchange`, `--pixels`, `--gather` and `--overlap`, how partial
-// images become one, `--hostfile`, where the ranks are, and `--server-opengl` and `--sandbox`, of GL servers.
+// Options of commands that start nodes: `--exchange`, `--pixels`, `--gather` and `--overlap` (compositing),
+// `--hostfile` (where ranks run), and `--server-opengl` and `--sandbox` (of GL servers).
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,13 +11,14 @@
 
 namespace understudy::launcher {
 
-/// As spu/options.h has them; their variables count too, for viewers that start nodes of their own.
+/// Adds options of spu/options.h; their environment variables apply, too, as they do to viewers
+/// that start nodes themselves.
 void add_exchange_options(CLI::App& subcommand, NodeChoices& choices);
 
-/// `--tiles`, of those who start a GL server.
+/// `--tiles`, for commands that start a GL server.
 void add_tiles_option(CLI::App& subcommand, std::string& tiles);
 
-/// What a GL server beside the nodes draws with, as spu/options.h has it.
+/// `--server-opengl` of spu/options.h: what a GL server beside the nodes draws with.
 void add_gl_server_option(CLI::App& subcommand, std::string& opengl);
 void add_sandbox_option(CLI::App& subcommand, std::string& sandbox);
 

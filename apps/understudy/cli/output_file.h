@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that a command writes at its end: whether that is possible is found out before it begins.
+// Checks, before a command begins, that the files it writes at its end can be written.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,9 +7,8 @@
 
 namespace understudy::launcher {
 
-/// For CLI::Option::check(): the file can be made or overwritten, and its name ends as its format does,
-/// `ending`
-/// (".png"); empty: any name. Nothing is changed.
+/// For CLI::Option::check(): checks that the file can be created or overwritten, and that its name ends with
+/// `ending` (".png"), or has any name if `ending` is empty. Changes nothing.
 CLI::Validator can_be_written(const std::string& ending = {});
 
 }  // namespace understudy::launcher

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `--partition` of `run`, `replay`, `render`, `study`, `view` and `serve`: where nodes that divide a volume cut
-// it.
+// `--partition` of `run`, `replay`, `render`, `study`, `view` and `serve`: how the volume is partitioned
+// among nodes that divide it.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -22,7 +22,7 @@
 namespace understudy::launcher {
 namespace {
 
-/// Different faults of a trace that are said; more are only counted.
+/// Maximum number of distinct faults of a trace that are logged; further ones are only counted.
 constexpr std::size_t most_faults_of_play = 20;
 
 class Playing {
@@ -106,12 +106,12 @@ class Playing {
 
   const PlayPlan plan_;
   spu::TraceReader reader_;
-  const std::uintmax_t bytes_;  ///< of the trace
+  const std::uintmax_t bytes_;  ///< size of the trace
   Progress progress_;
   const std::unique_ptr<OffscreenContexts> windows_;
   spu::Player player_;
   Played played_;
-  std::uint64_t frame_ = 1;  ///< that is being drawn
+  std::uint64_t frame_ = 1;  ///< the frame that is being drawn
   std::set<std::string> told_;
 };
 

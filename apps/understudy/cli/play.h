@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plays a trace in this process: what `understudy replay` starts, and what tests call.
+// Plays a trace in this process; started by `understudy replay` and called by tests.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -23,14 +23,14 @@ struct FrameRange {
   bool contains(std::uint64_t frame) const { return frame >= first && frame <= last; }
 };
 
-/// "3-7", "3-" or "3". Throws std::runtime_error when the text says no range.
+/// Parses "3-7", "3-" or "3". Throws std::runtime_error if the text is not a range.
 FrameRange parse_frame_range(const std::string& text);
 
 struct PlayPlan {
   std::filesystem::path trace;
-  FrameRange frames;                  ///< the ones that are saved and counted; playing ends behind them
-  std::filesystem::path save_frames;  ///< a folder for images; empty: none are saved
-  PlayedRecord* played = nullptr;     ///< told of every record, where somebody looks after the player
+  FrameRange frames;                  ///< frames that are saved and counted; playing ends after them
+  std::filesystem::path save_frames;  ///< folder for images; empty: none are saved
+  PlayedRecord* played = nullptr;     ///< receives every record, if the player is guarded (guarded_player.h)
   ProgressStyle progress = ProgressStyle::silent;
 };
 
@@ -40,8 +40,8 @@ struct Played {
   std::uint64_t errors = 0;  ///< records that could not be played
 };
 
-/// Says on stderr what could not be played. Throws std::runtime_error when the file is damaged or no context
-/// can be made.
+/// Plays the trace; logs to stderr what could not be played. Throws std::runtime_error if the file is damaged
+/// or no context can be created.
 Played play(const PlayPlan& plan, const spu::Options& options);
 
 /// Adds the subcommand `play`, which is not shown in the help.

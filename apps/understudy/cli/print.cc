@@ -58,7 +58,7 @@ int print(const PrintArguments& arguments) {
     }
   }
   text.finish();
-  // A reader that has seen enough, as head has, is no error.
+  // It is no error if the reader closes the pipe early, as head does.
   std::fflush(stdout);
   if (reader.cut_off())
     logging::log(logging::Level::warn, "{} was cut off; it was printed up to its last complete block",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy print TRACE`: what a trace holds, one line a record.
+// `understudy print TRACE`: prints the records of a trace, one line each.
 #pragma once
 
 #include <CLI/CLI.hpp>

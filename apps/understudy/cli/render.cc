@@ -54,7 +54,7 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// Over black, or as it is with its alpha.
+/// Returns the image over black, or unchanged with its alpha.
 RgbaImage image_of(const volume::ImageView& image, const volume::Rect& window, bool with_alpha) {
   RgbaImage file_image = whole_window(image, window);
   file_image.has_alpha = with_alpha;
@@ -63,16 +63,16 @@ RgbaImage image_of(const volume::ImageView& image, const volume::Rect& window, b
   return file_image;
 }
 
-/// Of an image of bounds.
+/// Computes the figures of an image whose pixels are error bounds.
 BoundFigures bound_figures(const volume::ImageView& image) {
   std::vector<double> bounds;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4)
-    if (image.rgba[i] > 0) bounds.push_back(std::min(double(image.rgba[i]), 1.0));  // no channel shows more
+    if (image.rgba[i] > 0) bounds.push_back(std::min(double(image.rgba[i]), 1.0));  // no channel exceeds 1
   if (bounds.empty()) return {};
   return {*std::ranges::max_element(bounds), median(bounds), 0};
 }
 
-/// How a volume is shown within the ranks' memory: what that holds, in one part.
+/// The parts in which a volume is rendered within the ranks' memory: one if it fits as a whole.
 struct Passes {
   volume::Partition parts;
   compositor::LoadRequest load;
@@ -83,7 +83,7 @@ Passes passes_of(const volume::VolumeFile& file, const FileScene& scene, const R
   VolumeMemory memory = memory_for_volume(arguments.memory, ranks, ranks_are_here(arguments.nodes),
                                           std::size_t(scene.image.width) * std::size_t(scene.image.height),
                                           arguments.scene.samples_are_free);
-  // Bounds keep 28 bytes for each 8 cells, beside the 12 that their bricks take at least.
+  // Error bounds take 28 bytes for each 8 cells, in addition to the 12 that their bricks take at least.
   if (scene.image.bounds_error) memory.bytes /= 4;
   Passes passes{{}, scene.load};
   const volume::VolumeDescription& volume = scene.load.volume;
@@ -93,7 +93,7 @@ Passes passes_of(const volume::VolumeFile& file, const FileScene& scene, const R
         "no part of this volume fits into {} MiB for each rank; increase --memory, or use more nodes",
         memory.bytes >> 20U));
   passes.parts = *std::move(parts);
-  // A part is divided among all ranks; a whole volume one of them may keep for the others.
+  // A part is divided among all ranks, whereas one rank may keep a whole volume for the others.
   if (memory.of_each_process && passes.parts.ranks == 1 && ranks > 1 &&
       compositor::bytes_of_rank(volume, file, 1) > memory.bytes)
     passes.load.volume.part = volume::shown_cells(volume);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy render VOLUME [-n N] --out P.png`: one image of a volume in a file, by nodes or in this
-// process, without a viewer and without OpenGL.
+// `understudy render VOLUME [-n N] --out P.png`: renders an image of a volume file on nodes or in this process,
+// without a viewer and without OpenGL.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -24,7 +24,7 @@ const char* name_of(volume::TexelType type) {
   return type == volume::TexelType::u8 ? "u8" : type == volume::TexelType::u16 ? "u16" : "f32";
 }
 
-/// "12 MiB", or "8 to 12 MiB" over the ranks.
+/// Returns "12 MiB", or "8 to 12 MiB" if ranks differ.
 template <class Figure>
 std::string over_ranks(const std::vector<compositor::RankLoad>& ranks, Figure figure) {
   const auto [least, most] = std::ranges::minmax(ranks, {}, figure);
@@ -35,7 +35,7 @@ std::string over_ranks(const std::vector<compositor::RankLoad>& ranks, Figure fi
   return low == high ? high + " MiB" : fmt::format("{} to {} MiB", low, high);
 }
 
-/// Surfaces by their values.
+/// Lists surfaces by their values in the volume's own units.
 Json image_json(const RenderFigures& figures) {
   const volume::RenderRequest& request = figures.request;
   Json surfaces = Json::array();

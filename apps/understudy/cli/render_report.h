@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a rendering without a viewer says about itself: one line, and a JSON report (docs/report.md).
+// What a rendering without a viewer reports: a summary, and a JSON report (docs/report.md).
 #pragma once
 
 #include <optional>
@@ -15,33 +15,33 @@
 
 namespace understudy::launcher {
 
-/// Of the certified bounds of an image's pixels.
+/// Figures of the certified error bounds of an image's pixels.
 struct BoundFigures {
   double greatest = 0;
-  double median = 0;  ///< of the pixels that rays through the volume show
+  double median = 0;  ///< over the pixels whose rays hit the volume
   double time_ms = 0;
 };
 
 struct RenderFigures {
   std::string file;
   int time_step = 0;
-  std::optional<int> channel;  ///< none: the volume has one
+  std::optional<int> channel;  ///< empty: the volume has only one
   volume::FileDescription description;
   volume::TexelMapping mapping;
   int width = 0;
   int height = 0;
   double step = 0;
-  volume::RenderRequest request;      ///< the last frame's
-  std::vector<std::string> backends;  ///< what nodes of this rendering said about who casts their rays
-  int nodes = 0;                      ///< 0: in this process
+  volume::RenderRequest request;      ///< of the last frame
+  std::vector<std::string> backends;  ///< backends that the nodes of this rendering reported
+  int nodes = 0;                      ///< 0: rendered in this process
   double open_ms = 0;
   double load_ms = 0;
   std::vector<double> frame_ms;
-  std::optional<BoundFigures> bound;        ///< of the last frame, where it was asked for
+  std::optional<BoundFigures> bound;        ///< of the last frame, if requested
   volume::FrameCounts counts;               ///< of the last frame
   std::vector<compositor::RankLoad> ranks;  ///< after the last frame
   compositor::PassFigures passes;
-  spu::BudgetCounters budget{};  ///< where an error or a time was asked for
+  spu::BudgetCounters budget{};  ///< if an error or a time was requested
 };
 
 std::string summary_text(const RenderFigures& figures);

@@ -31,8 +31,8 @@ struct ReplayArguments {
   ProgressOptions progress;
 };
 
-/// The player is a process of its own, as a viewer is: nodes are looked after while it plays, and whatever a
-/// driver does to it, the figures remain.
+/// The player is a separate process, like a viewer: the nodes are supervised while it plays, and its figures
+/// survive if a driver crashes it.
 int replay(const ReplayArguments& replay, RunArguments arguments) {
   arguments.injection.reset();
   if (replay.native) arguments.settings["UNDERSTUDY_CHAIN"] = "driver";
@@ -52,7 +52,7 @@ int replay(const ReplayArguments& replay, RunArguments arguments) {
 }  // namespace
 
 void add_replay(CLI::App& app, std::function<int()>& chosen) {
-  // These mean something else to a replay, or nothing.
+  // These have a different meaning for a replay, or none.
   constexpr std::array<std::string_view, 3> without = {"--save-frames", "--chain", "--sandbox"};
   const auto own = std::make_shared<ReplayArguments>();
   const auto arguments = std::make_shared<RunArguments>();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy replay TRACE`: plays what `understudy run --trace` recorded, without a viewer and without a
-// display.
+// `understudy replay TRACE`: plays what `understudy run --trace` has recorded, without a
+// viewer and without a display.
 #pragma once
 
 #include <CLI/CLI.hpp>

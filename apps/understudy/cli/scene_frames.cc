@@ -46,7 +46,7 @@ bool SceneFrames::choose_samples(RenderFigures& figures) {
 }
 
 compositor::Rendered SceneFrames::next(RenderFigures& figures) {
-  // Each turn is finer than the one before: what can be kept is kept after fewer.
+  // Each turn is finer than the one before: a budget that can be kept is reached in fewer turns.
   constexpr int most_turns = 8;
   for (int turn = 1;; ++turn) {
     const bool chosen = budget_ && choose_samples(figures);

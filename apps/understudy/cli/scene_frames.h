@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images of one scene, with samples where a budget wants them, if there is one.
+// Renders images of one scene; an error or time budget, if there is one, chooses the samples.
 #pragma once
 
 #include <optional>
@@ -16,19 +16,20 @@ struct RenderFigures;
 
 class SceneFrames {
  public:
-  /// `service` outlives this. `own` is what is shown without a budget.
+  /// `service` must outlive this object. `own` is rendered if there is no budget.
   SceneFrames(compositor::ImageService& service, const volume::VolumeDescription& volume,
               const volume::RenderRequest& own, const spu::BudgetAsked& asked);
-  /// Images are proven before they are shown, and not looked at again: where that takes long.
+  /// Disables checks of images after they are rendered, where these take long: images are
+  /// proven before they are shown.
   void look_no_more() { looks_ = false; }
 
-  /// In place of an image that a budget finds wrong by too much, another is made. Notes the request, the step,
-  /// the time and what was counted. Throws as the service does, and std::invalid_argument where a budget cannot
-  /// be kept.
+  /// Renders the next image. Repeats it with finer samples if its error is found to exceed the budget.
+  /// Records the request, step, time and counts in `figures`. Throws as the service does, and
+  /// std::invalid_argument if a budget cannot be kept.
   compositor::Rendered next(RenderFigures& figures);
 
  private:
-  /// False: there is nothing to choose for, an empty image.
+  /// Returns false if the image is empty, so that there is nothing to choose for.
   bool choose_samples(RenderFigures& figures);
 
   compositor::ImageService& service_;

@@ -38,10 +38,10 @@ struct ServeArguments {
   std::optional<int> nodes;
   std::filesystem::path hostfile;
   NodeChoices choices;
-  std::string socket;       ///< empty: in the folder
-  std::string folder;       ///< empty: one of its own
-  pid_t while_process = 0;  ///< 0: until asked to end
-  std::string listen;       ///< host:port for clients of other machines; empty: none
+  std::string socket;       ///< empty: in `folder`
+  std::string folder;       ///< empty: a new private folder
+  pid_t while_process = 0;  ///< process whose end ends this one; 0: run until a signal
+  std::string listen;       ///< host:port for clients on other machines; empty: none
   std::filesystem::path secret_file;
   std::filesystem::path key_file;
   std::filesystem::path clients;
@@ -56,13 +56,13 @@ bool is_over(const ServeArguments& arguments) {
   return arguments.while_process > 0 && kill(arguments.while_process, 0) != 0 && errno == ESRCH;
 }
 
-/// What clients of other machines come to.
+/// Processes that serve clients on other machines.
 struct Frontends {
   std::unique_ptr<ChildProcess> server;
   OpenListener listener;
 };
 
-/// The GL server has the options of this environment, and the nodes' socket.
+/// Starts a GL server with the options of this environment and the nodes' socket.
 std::unique_ptr<ChildProcess> start_gl_server_of_nodes(const Installation& installation,
                                                        const NodeGroupPlan& nodes,
                                                        const std::filesystem::path& socket,
@@ -109,7 +109,7 @@ Frontends open_frontends(const Installation& installation, const ServeArguments&
   return frontends;
 }
 
-/// Said, and done without: clients of this machine are served.
+/// Logs frontends that have ended, and continues without them: clients on this machine are still served.
 void look_after(Frontends& frontends) {
   const auto ended = [](std::unique_ptr<ChildProcess>& process, const char* what) {
     if (!process) return;
@@ -122,7 +122,7 @@ void look_after(Frontends& frontends) {
   ended(frontends.listener.process, "the listener, which accepts clients from other machines,");
 }
 
-/// Returns when a signal asks for the end. The nodes and the socket are gone then.
+/// Serves until a signal requests the end. On return, the nodes and the socket are gone.
 int serve(const ServeArguments& arguments) {
   const Installation installation = this_installation();
   const Placement placement = placement_of({arguments.nodes, arguments.hostfile}, current_environment());
@@ -201,7 +201,7 @@ void add_group_options(CLI::App& subcommand, ServeArguments& arguments) {
       ->capture_default_str();
 }
 
-/// Who may come in from other machines. Returns --listen.
+/// Adds the options for clients on other machines. Returns --listen.
 CLI::Option* add_listener_options(CLI::App& subcommand, ServeArguments& arguments) {
   subcommand
       .add_option("--secret-file", arguments.secret_file,
@@ -233,7 +233,7 @@ CLI::Option* add_listener_options(CLI::App& subcommand, ServeArguments& argument
 void add_serve(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<ServeArguments>();
   arguments->choices.image_ms = int(compositor::limits::image_time.count());
-  // A name that others could guess needs a folder that they cannot write into.
+  // A predictable name is safe only in a folder that others cannot write to.
   if (const auto runtime = compositor::private_runtime_folder())
     arguments->socket = *runtime / "understudy-nodes.sock";
   CLI::App* subcommand = app.add_subcommand("serve", "keeps render nodes running, for viewers to connect to");

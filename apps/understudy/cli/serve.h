@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy serve -n N [--socket PATH]`: keeps a node group running for viewers that come and go.
+// `understudy serve -n N [--socket PATH]`: keeps a node group running, which viewers connect to.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -15,7 +15,7 @@ namespace understudy::launcher {
 void prepare_trace(RunArguments& arguments) {
   spu::Options options = spu::options_from_environment();
   for (const auto& [environment, value] : arguments.settings) spu::set_option(options, environment, value);
-  // A process that finds the file there records in another one.
+  // A process that finds an existing file records to another one.
   std::filesystem::remove(arguments.trace);
   const spu::UnitSetting trace{
       .name = "trace", .options = {{.name = "file", .value = std::filesystem::absolute(arguments.trace)}}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy run --trace FILE`: the viewer's chain begins with the unit that records it.
+// `understudy run --trace FILE`: puts the trace unit, which records calls, at the
+// beginning of the viewer's chain.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +10,11 @@
 
 namespace understudy::launcher {
 
-/// Puts the trace unit before the chain of `arguments` and makes room for its file. Throws std::exception when
-/// there is something that cannot be removed, or the chain is none.
+/// Puts the trace unit before the chain of `arguments` and removes an old trace file. Throws std::exception if
+/// the file cannot be removed or the chain is invalid.
 void prepare_trace(RunArguments& arguments);
 
-/// "t.ust: 20 frames, 1.4 MB; play it with: understudy replay t.ust"
+/// For example "t.ust: 20 frames, 1.4 MB; play it with: understudy replay t.ust".
 std::string trace_summary(const std::filesystem::path& trace);
 
 }  // namespace understudy::launcher

@@ -24,10 +24,10 @@
 namespace understudy::launcher {
 namespace {
 
-/// Different faults of a trace that are said.
+/// Maximum number of distinct faults of a trace that are logged.
 constexpr std::size_t most_faults_of_trim = 20;
 
-/// Calls `take(record, frame)` for every record up to the end of frame `last`; frames count from 1.
+/// Calls `take(record, frame)` for every record up to the end of frame `last`; frames are counted from 1.
 template <class Take>
 std::uint64_t walk(const std::filesystem::path& trace, std::uint64_t last, const Take& take) {
   spu::TraceReader reader(trace);
@@ -55,7 +55,7 @@ spu::Options bare() {
   return options;
 }
 
-/// An image as one number: FNV-1a.
+/// Returns the FNV-1a hash of an image.
 std::uint64_t fingerprint(const void* bytes, std::size_t size) {
   const auto* byte = static_cast<const std::uint8_t*>(bytes);
   std::uint64_t sum = 0xcbf2'9ce4'8422'2325U;
@@ -63,7 +63,7 @@ std::uint64_t fingerprint(const void* bytes, std::size_t size) {
   return sum;
 }
 
-/// The images of frames that are played natively: what is shown, and what is read back.
+/// Images of frames that are played natively: those shown, and those read back.
 class Images {
  public:
   Images()
@@ -79,7 +79,7 @@ class Images {
   }
 
   spu::Player& player() { return player_; }
-  /// What was seen since the last time.
+  /// Returns the images since the last call.
   std::vector<std::uint64_t> take() { return std::exchange(images_, {}); }
 
  private:
@@ -97,7 +97,7 @@ std::vector<std::uint64_t> images_of(const TrimPlan& plan) {
   return images.take();
 }
 
-/// Says once what of a trace cannot be played.
+/// Logs each record that cannot be played, once per distinct fault.
 class Faults {
  public:
   explicit Faults(const std::filesystem::path& trace) : trace_(trace) {}
@@ -156,7 +156,7 @@ void trim(const TrimPlan& plan) {
     wanted = whole.take();
   }
 
-  // What was drawn before the cut is brought back only where a frame looks at it.
+  // Earlier drawing is restored only if a frame depends on it, so try without the restoration first.
   const spu::Records nothing;
   for (const spu::Records* brought_back : std::initializer_list<const spu::Records*>{&nothing, &restoration}) {
     write(plan, actions, *brought_back);

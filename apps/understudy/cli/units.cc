@@ -33,7 +33,7 @@ std::string about_all(const spu::UnitDescription& unit) {
   return text;
 }
 
-/// Units that are built elsewhere, each with its file.
+/// Describes units from plugins, each with its file.
 std::string plugins_text() {
   std::string text;
   for (const std::filesystem::path& file : spu::plugin_files()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy units`: the stream processing units that chains are made of, with their options.
+// `understudy units`: lists the stream processing units that chains can use, with their options.
 #pragma once
 
 #include <CLI/CLI.hpp>

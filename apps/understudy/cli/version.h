@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy --version`: what was built, of which commit, and what it uses here.
+// `understudy --version`: what was built, from which commit, and what it uses on this machine.
 #pragma once
 
 #include <string>
 
 namespace understudy::launcher {
 
-/// A few lines, for people who report what went wrong.
+/// Returns a few lines for bug reports.
 std::string version_text();
 
 }  // namespace understudy::launcher

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A viewer is named by its program, and where that is Python by its script.
+/// Returns the names of a viewer: its program and, if there is one, its Python script.
 std::vector<std::string> names_of(const std::vector<std::string>& viewer) {
   std::vector<std::string> names;
   if (viewer.empty()) return names;

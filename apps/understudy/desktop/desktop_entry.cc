@@ -16,14 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "paraview" names paraview and org.paraview.ParaView.
+/// Returns whether `viewer` names `entry`: "paraview" names paraview and org.paraview.ParaView.
 bool names(const std::string& viewer, const std::string& entry) {
   if (viewer.size() > entry.size()) return false;
   const std::size_t before = entry.size() - viewer.size();
   return strcasecmp(entry.c_str() + before, viewer.c_str()) == 0 && (before == 0 || entry[before - 1] == '.');
 }
 
-/// A word of an Exec line: quoted where it has a character that is reserved there.
+/// Returns a word of an Exec line, quoted if it contains a reserved character.
 std::string exec_word(const std::string& word) {
   constexpr std::string_view reserved = " \t\n\r\"'\\><~|&;$*?#()`";
   std::string doubled;
@@ -34,7 +34,7 @@ std::string exec_word(const std::string& word) {
     if (c == '"' || c == '`' || c == '$' || c == '\\') quoted += '\\';
     quoted += c;
   }
-  // A backslash of the value is written as two.
+  // A backslash in a value is written as two.
   std::string written;
   for (const char c : quoted + '"') {
     if (c == '\\') {
@@ -48,7 +48,7 @@ std::string exec_word(const std::string& word) {
   return written;
 }
 
-/// Of a line "Key=value" or "Key[locale]=value"; empty: of another line.
+/// Returns the key of a line "Key=value" or "Key[locale]=value"; empty for any other line.
 std::string key_of(const std::string& line) {
   const std::size_t end = line.find_first_of("=[ ");
   return line.empty() || line.front() == '[' || line.front() == '#' || end == std::string::npos

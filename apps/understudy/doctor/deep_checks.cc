@@ -21,7 +21,7 @@ namespace understudy::launcher {
 namespace {
 
 constexpr int patience_ms = 20'000;
-constexpr int edge = 24;  // of the volume, in voxels
+constexpr int edge = 24;  // edge of the volume, in voxels
 
 struct Way {
   const char* name;
@@ -38,7 +38,7 @@ std::vector<Way> ways() {
           {"run, GL server", {"--remote"}, "apt install libegl1 libegl-mesa0 libgl1-mesa-dri"}};
 }
 
-/// A ball that is densest in its middle, as raw bytes.
+/// Writes a ball that is densest in its centre, as raw bytes; returns its path.
 std::filesystem::path written_volume(const std::filesystem::path& folder) {
   std::filesystem::path path = folder / fmt::format("ball.{0}x{0}x{0}.raw", edge);
   std::ofstream file(path, std::ios::binary);

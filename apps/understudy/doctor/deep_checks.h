@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a viewer's volume is substituted here, by each way that there is: the bundled viewer is run, off
-// screen, on a small volume.
+// Checks whether a viewer's volume is substituted on this machine, for each available way to run: runs the
+// bundled viewer off screen on a small volume.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace understudy::launcher {
 
-/// `told` hears each as soon as it is known. Throws std::system_error where no files can be written.
+/// Calls `told` with each finding as soon as it is known. Throws std::system_error if no files can be written.
 std::vector<NamedFinding> deep_findings(const std::function<void(const NamedFinding&)>& told);
 
 }  // namespace understudy::launcher

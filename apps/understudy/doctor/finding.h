@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `understudy doctor` finds.
+// The findings of `understudy doctor`.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct Finding {
 struct NamedFinding {
   std::string name;
   Finding finding;
-  std::string fix;  ///< what to do where it does not work
+  std::string fix;  ///< what to do if it does not work
 };
 
 }  // namespace understudy::launcher

@@ -38,7 +38,7 @@ struct Check {
   const char* fix;
 };
 
-/// A library that is opened when asked for, so that this program starts where it is missing.
+/// A library that is opened at run time, so that this program starts without it.
 class Library {
  public:
   explicit Library(const char* name) : handle_(dlopen(name, RTLD_NOW | RTLD_LOCAL)) {}
@@ -49,7 +49,7 @@ class Library {
   }
 
  private:
-  void* handle_;  // never closed: drivers do not like it, and the probe's process ends soon
+  void* handle_;  // never closed, because some drivers crash then; the probe's process ends soon
 };
 
 using GetString = const GLubyte* (*)(GLenum);
@@ -142,13 +142,13 @@ Finding look_at_injection_methods() {
   return {true, "audit, preload and folder, in " + here.libraries.string()};
 }
 
-/// What can still be done in the sandbox of a GL server's processes: nothing, if it holds.
+/// Returns what is still possible in the sandbox of a GL server's process; empty if the sandbox holds.
 std::vector<std::string> escapes() {
   std::vector<std::string> found;
   if (open("/proc/self/status", O_RDONLY | O_CLOEXEC) >= 0) found.emplace_back("files can be opened");
   if (socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0) >= 0) found.emplace_back("sockets can be created");
   if (ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) == 0) found.emplace_back("processes can be traced");
-  // Last: where it works, another program is here.
+  // Must be last: if it succeeds, it replaces this program.
   std::array<char*, 1> none{};
   execve("/proc/self/exe", none.data(), none.data());
   if (errno != EPERM) found.emplace_back("programs can be started");
@@ -190,7 +190,7 @@ Finding finding_of(const Check& check) {
   }
 }
 
-/// Drivers may crash, hang or end their process: each check runs in a process of its own.
+/// Runs the check in a separate process, because drivers may crash, hang or exit.
 Finding look_apart(const Check& check) {
   std::array<int, 2> channel{};
   if (pipe(channel.data()) != 0) return {false, std::strerror(errno)};

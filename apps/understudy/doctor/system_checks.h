@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which parts of the system are there: X, OpenGL's window systems, MPI, the sandbox, and the parts of
-// Understudy.
+// Checks which parts of the system are available: X, OpenGL's window systems, MPI, the sandbox,
+// and the parts of Understudy.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace understudy::launcher {
 
-/// `told` hears each as soon as it is known.
+/// Calls `told` with each finding as soon as it is known.
 std::vector<NamedFinding> system_findings(const std::function<void(const NamedFinding&)>& told);
 
 }  // namespace understudy::launcher

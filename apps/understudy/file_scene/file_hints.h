@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a command line says of a file: of raw scalars what these do not say themselves, and which channel is
-// meant.
+// Options that describe a file: what raw scalars do not specify themselves, and which channel to read.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -21,7 +20,7 @@ struct FileHintOptions {
 
 void add_file_hints(CLI::App& subcommand, FileHintOptions& hints);
 
-/// Throws std::invalid_argument for a type that there is not.
+/// Throws std::invalid_argument for an unknown type.
 volume::FileHints file_hints(const FileHintOptions& hints);
 
 }  // namespace understudy::launcher

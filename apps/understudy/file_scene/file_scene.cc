@@ -130,7 +130,7 @@ namespace {
 
 struct Series {
   std::vector<volume::SeriesStep> steps;
-  volume::FileDescription description;  ///< of any step, with the values of all of them
+  volume::FileDescription description;  ///< of any step, with the range of values over all steps
 };
 
 void append_steps(std::vector<volume::SeriesStep>& steps, const std::string& file, int in_file) {
@@ -141,12 +141,12 @@ void append_steps(std::vector<volume::SeriesStep>& steps, const std::string& fil
   for (int step = 0; step < in_file; ++step) steps.push_back({file, step});
 }
 
-/// Of files that have one size, type and spacing.
+/// Describes a series of files, which must have the same size, type and spacing.
 Series described_series(const std::vector<std::string>& files, const volume::FileHints& hints,
                         bool spacing_is_given) {
   Series series;
   volume::FileDescription& first = series.description;
-  volume::DicomHeaders headers;  // files of one series lie in one folder
+  volume::DicomHeaders headers;  // read once, because files of a series share a folder
   for (const std::string& file : files) {
     const volume::FileDescription one = volume::open_volume(file, hints, {}, headers)->description();
     append_steps(series.steps, file, one.time_steps);
@@ -218,7 +218,7 @@ FileScene scene_of(const SceneArguments& arguments, const volume::FileDescriptio
       throw std::invalid_argument(
           "--error-bound does not include the error of a level of detail; leave out --level");
     const double apart = double(1 << detail->level);
-    // A step leads from sample to sample of the level.
+    // --step is in samples of the level.
     scene.image.step *= apart;
     if (!arguments.spacing.empty()) scene.file.spacing = volume::scale(scene.file.spacing, apart);
   }
@@ -230,7 +230,8 @@ FileScene scene_of(const SceneArguments& arguments, const volume::FileDescriptio
   scene.load.volume.stored = {{0, 0, 0}, scene.file.size};
   scene.image.shading = shading_of(arguments.shading, scene.extent());
   scene.image.bounds_error = arguments.error_bound;
-  // Segments, gradients and bounds reach beyond a node's own cells, by no more than the volume has.
+  // Pre-integrated segments, gradients and error bounds need cells beyond a node's own,
+  // but never beyond the volume.
   scene.load.volume.ghost_layer =
       volume::ghost_layer_needed(scene.load.volume, unclassified_request(scene, scene.image));
   if (arguments.samples_are_free)
@@ -274,16 +275,17 @@ std::invalid_argument no_bound() {
 volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& image,
                                  const volume::TexelFigures& values) {
   volume::RenderRequest request = unclassified_request(scene, image);
-  // A level of detail, or scalars that were rounded, may miss the volume's extremes, which colours go by.
+  // A level of detail, or scalars that were rounded, may lack the volume's extremes, which the
+  // transfer function refers to.
   const auto [least, greatest] = scene.file.values.value_or(std::array{values.low, values.high});
-  // A volume of one value has no range: the tables' least value is that one.
+  // A constant volume has no range: its value is mapped to the lower end of the transfer function.
   const double low = least <= greatest ? least : 0.0;
   const double high = least < greatest ? greatest : low + 1;
   const std::vector<double> surfaces = surface_values(image.shading, low, high);
   for (std::size_t i = 0; i < surfaces.size(); ++i)
     request.surfaces[i].value = scene.mapping.normalised(surfaces[i]);
   if (request.light) {
-    // A thousandth of the values' range per voxel.
+    // A thousandth of the range of values, per voxel.
     const double range = std::abs(scene.mapping.normalised(high) - scene.mapping.normalised(low));
     request.light->full_slope = float(1e-3 * range / std::ranges::max(scene.voxel()));
   }
@@ -297,11 +299,11 @@ volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& im
       sampled(segments ? spanning(image.control_points, low, high) : image.control_points, low, high, 1);
   table.low = float(scene.mapping.normalised(table.low));
   table.high = float(scene.mapping.normalised(table.high));
-  if (table.low > table.high) {  // texels fall where values rise
+  if (table.low > table.high) {  // texels decrease with increasing values
     std::swap(table.low, table.high);
     std::ranges::reverse(table.entries);
   }
-  // One medium at every step: opacity is linear between entries for one voxel.
+  // The medium is the same at every step size: opacity is linear between entries for one voxel's length.
   request.classification = opacity_corrected(table, image.step, table.entries.size());
   if (image.bounds_error) request.bound_of = {std::move(table), image.step};
   request.steps->cover_whole_ray = may_cover_whole_rays(request);
@@ -312,7 +314,7 @@ volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& im
 volume::TexelFigures texel_figures(const std::vector<compositor::RankLoad>& ranks) {
   volume::TexelFigures figures;
   for (const compositor::RankLoad& rank : ranks) {
-    if (rank.low <= rank.high) {  // a rank may have no share
+    if (rank.low <= rank.high) {  // a rank may have no part of the volume
       const bool first = figures.low > figures.high;
       figures.low = first ? rank.low : std::min(figures.low, rank.low);
       figures.high = first ? rank.high : std::max(figures.high, rank.high);

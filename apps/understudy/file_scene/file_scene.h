@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A volume in a file and the image that is wanted of it, as commands without an application take them on
-// their command lines.
+// A volume in a file and the image to render of it, as specified on the command lines of
+// commands without an application.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -20,8 +20,8 @@
 namespace understudy::launcher {
 
 struct SceneArguments {
-  std::vector<std::string> volumes;  ///< of one time step each, or of several
-  int time_step = 0;                 ///< of all of them, counted from 0
+  std::vector<std::string> volumes;  ///< files of one time step each, or of several
+  int time_step = 0;                 ///< index over all files, counted from 0
   ShadingArguments shading;
   std::string transfer_function = "grey";
   std::string camera = "30,20,4";
@@ -34,55 +34,55 @@ struct SceneArguments {
   std::string range;
   int level = 0;
   bool error_bound = false;
-  bool samples_are_free = false;  ///< a budget says where they lie
+  bool samples_are_free = false;  ///< an error or time budget chooses the samples
 };
 
 void add_scene_options(CLI::App& subcommand, SceneArguments& arguments);
 
-/// What an image of a volume shows, from where, and how finely.
+/// What an image of a volume shows, from which camera, and with which step.
 struct ImageSettings {
   volume::TransferControlPoints control_points;
   Shading shading;
   volume::OrbitCamera camera;
   int width = 512;
   int height = 512;
-  double step = 1;  ///< between samples, in voxels of the finest level
+  double step = 1;  ///< distance between samples, in voxels of the finest level
   float termination = 5e-6F;
-  bool bounds_error = false;  ///< requests are made for certified bounds, too
+  bool bounds_error = false;  ///< certified error bounds are requested, too
 };
 
 struct FileScene {
-  compositor::LoadRequest load;            ///< of the time step that is shown first
+  compositor::LoadRequest load;            ///< for the time step that is shown first
   std::vector<volume::SeriesStep> series;  ///< all time steps
-  int time_step = 0;                       ///< that of `load`
+  int time_step = 0;                       ///< the time step of `load`
   volume::FileDescription file;
   volume::TexelMapping mapping;
   ImageSettings image;
 
-  /// Of the texture that its scalars become, in the unit of their spacing.
+  /// Extent of the texture that the scalars become, in the unit of their spacing.
   volume::Vec3 extent() const;
-  /// Of the volume itself, where `file` is a coarser level of it.
+  /// Size of the volume itself, even if `file` is a coarser level of it.
   std::array<int, 3> volume_size() const { return file.detail ? file.detail->volume_size : file.size; }
-  /// Between the volume's own scalars.
+  /// Spacing of the volume's own scalars.
   volume::Vec3 voxel() const;
-  /// Of any time step, as a volume beside the others.
+  /// Request to load any time step, as a volume separate from the others.
   compositor::LoadRequest load_of(int step) const;
 };
 
-/// Everything that can be known to be wrong before a byte of the volume is read. The volume's ghost layer is
-/// wide enough for the image. Throws std::invalid_argument and volume::FileError.
+/// Makes the scene; detects every error that can be detected before the volume is read. The ghost layer is wide
+/// enough for the image. Throws std::invalid_argument and volume::FileError.
 FileScene scene_of(const SceneArguments& arguments);
-/// The same of scalars that lie in no file: what `arguments` says of a file is not looked at.
+/// The same for scalars that are not in a file: arguments that concern a file are ignored.
 FileScene scene_of(const SceneArguments& arguments, const volume::FileDescription& described);
 
-/// All but the classification, and the surfaces' values. Throws std::invalid_argument.
+/// Makes a request without the classification and the values of the surfaces. Throws std::invalid_argument.
 volume::RenderRequest unclassified_request(const FileScene& scene, const ImageSettings& image);
 
-/// Once it is known which values the volume has. Throws std::invalid_argument.
+/// Completes the request once the range of the volume's values is known. Throws std::invalid_argument.
 volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& image,
                                  const volume::TexelFigures& values);
 
-/// The values in the volume and how they became texels, summed over the ranks.
+/// Returns the range of the volume's values and the conversion errors, combined over the ranks.
 volume::TexelFigures texel_figures(const std::vector<compositor::RankLoad>& ranks);
 
 }  // namespace understudy::launcher

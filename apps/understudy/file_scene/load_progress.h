@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far the ranks are in reading a volume.
+// Progress of the ranks in reading a volume.
 #pragma once
 
 #include <span>
@@ -10,12 +10,12 @@
 
 namespace understudy::launcher {
 
-/// "loading  42 % [########            ] 110 MiB read by 4 ranks"
+/// For example "loading  42 % [########            ] 110 MiB read by 4 ranks".
 std::string progress_text(std::span<const compositor::RankLoad> ranks);
-/// The same of part `part`, counted from 0, of `parts`: "part 2 of 5: loading …".
+/// The same for part `part`, counted from 0, of `parts`: "part 2 of 5: loading …".
 std::string progress_text(int part, int parts, std::span<const compositor::RankLoad> ranks);
 
-/// Shows it; in lines that stay, with the bytes that each rank has read.
+/// Shows the progress; if it is shown in lines, with the bytes that each rank has read.
 void show_load(Progress& progress, int part, int parts, std::span<const compositor::RankLoad> ranks);
 
 }  // namespace understudy::launcher

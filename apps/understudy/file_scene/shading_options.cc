@@ -19,7 +19,7 @@ namespace {
 
 constexpr volume::Rgba plain_surface{0.9F, 0.9F, 0.9F, 1};
 
-/// All of `text` as one number.
+/// Parses all of `text` as one number.
 std::optional<double> number_in(std::string_view text) {
   double value = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -27,7 +27,7 @@ std::optional<double> number_in(std::string_view text) {
   return value;
 }
 
-/// "#e8c090", without the sign in front as well.
+/// Parses a colour such as "#e8c090"; the '#' is optional.
 std::optional<std::array<float, 3>> colour_in(std::string_view text) {
   if (text.starts_with('#')) text.remove_prefix(1);
   unsigned bits = 0;
@@ -163,7 +163,7 @@ volume::Operator operator_of(const ShadingArguments& arguments) {
   return volume::Operator::over;
 }
 
-/// In blocks. Throws std::invalid_argument.
+/// Returns the edge in blocks. Throws std::invalid_argument.
 std::uint8_t cut_of(const ShadingArguments& arguments, volume::Method method) {
   constexpr int block = volume::BrickStore::block_cells;
   if (arguments.cut_at_bricks < 0 || arguments.cut_at_bricks % block != 0 ||
@@ -175,7 +175,7 @@ std::uint8_t cut_of(const ShadingArguments& arguments, volume::Method method) {
   return std::uint8_t(arguments.cut_at_bricks / block);
 }
 
-/// Throws std::invalid_argument where the operator or the method cannot be had with surfaces or light.
+/// Throws std::invalid_argument if the operator or the method cannot be combined with surfaces or light.
 void check_combination(const ShadingArguments& arguments, volume::Method method) {
   const bool plain = arguments.surfaces.empty() && arguments.light.empty() && arguments.light_from.empty();
   if (arguments.op != "over" && !(plain && method == volume::Method::post_classified))

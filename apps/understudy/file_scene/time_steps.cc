@@ -27,7 +27,7 @@ TimeSteps::TimeSteps(compositor::LoadingService& service, const FileScene& scene
 
 compositor::LoadRequest TimeSteps::load_of(int step) const {
   compositor::LoadRequest load = scene_.load_of(step);
-  // A part is divided among all ranks; a whole volume one of them may keep for the others.
+  // A part is divided among all ranks, whereas one rank may keep a whole volume for the others.
   if (of_each_rank_ && service_.nodes() > 1) load.volume.part = volume::shown_cells(load.volume);
   return load;
 }
@@ -68,7 +68,7 @@ bool TimeSteps::make_room(int step, std::span<const int> in_use) {
   const auto fits = [&] {
     std::uint64_t held = largest_step_;
     for (const auto& [number, of] : steps_) held += of.complete ? bytes_of(of.ranks) : largest_step_;
-    // Beside what an application may hold, the one that is begun.
+    // The step to be loaded also counts against the limit of volumes per client.
     return steps_.size() < compositor::limits::max_volumes_per_client && held <= most_bytes_;
   };
   while (!fits()) {
@@ -110,7 +110,7 @@ void TimeSteps::show(int step, const Progress& progress) {
       }
       break;
     } catch (const compositor::RequestRefused&) {
-      // The service may have less room than it was believed to have.
+      // The service may have less memory than assumed.
       const auto least = failed_.contains(step) ? std::nullopt : least_wanted(step, {});
       if (!least) {
         failed_.insert(step);
@@ -141,7 +141,7 @@ bool TimeSteps::read_ahead(std::span<const int> in_use) {
     begin(next);
     return true;
   } catch (const compositor::RequestRefused&) {
-    failed_.insert(next);  // it is spoken of once it is wanted
+    failed_.insert(next);  // show() reports it when the step is requested
     return false;
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What ranks may take of memory for volumes.
+// Memory limits of the ranks for volumes.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +8,13 @@
 namespace understudy::launcher {
 
 struct VolumeMemory {
-  std::uint64_t bytes = 0;  ///< that each rank may take for its part of a volume
-  /// Whether no process may take more, or only all ranks together should not: ranks of one machine may keep
-  /// bricks for each other.
+  std::uint64_t bytes = 0;  ///< limit of each rank for its part of a volume
+  /// Whether the limit applies to each process; otherwise only to the sum over all ranks, because ranks of one
+  /// machine may keep bricks for each other.
   bool of_each_process = false;
 };
 
-/// Once it is known how many ranks there are.
+/// Returns the limits once the number of ranks is known.
 using RankMemory = std::function<VolumeMemory(int ranks)>;
 
 }  // namespace understudy::launcher

@@ -15,7 +15,7 @@ constexpr auto of_libraries = std::to_array<const char*>({
     "UNDERSTUDY_LOG",
     "UNDERSTUDY_PLUGINS",
     "XDG_RUNTIME_DIR",
-    // which driver, and how much of it
+    // selection and limits of the driver
     "CUDA_VISIBLE_DEVICES",
     "DRI_PRIME",
     "EGL_LOG_LEVEL",
@@ -33,14 +33,14 @@ constexpr auto of_libraries = std::to_array<const char*>({
     "NVIDIA_VISIBLE_DEVICES",
     "__EGL_VENDOR_LIBRARY_DIRS",
     "__EGL_VENDOR_LIBRARY_FILENAMES",
-    // of sanitizers
+    // options of sanitizers
     "ASAN_OPTIONS",
     "LSAN_OPTIONS",
     "TSAN_OPTIONS",
     "UBSAN_OPTIONS",
 });
 
-/// Lists of paths with colons between them.
+/// Variables that contain lists of paths, separated by colons.
 constexpr auto places_of_libraries =
     std::to_array<const char*>({"LD_LIBRARY_PATH", "GBM_BACKENDS_PATH", "LIBGL_DRIVERS_PATH",
                                 "__EGL_VENDOR_LIBRARY_DIRS", "__EGL_VENDOR_LIBRARY_FILENAMES"});

@@ -9,12 +9,12 @@
 
 namespace understudy::launcher {
 
-/// What `whole` has of a fixed list: Understudy's options, and what chooses libraries and drivers of OpenGL.
-/// Mesa keeps no shaders in files.
+/// Returns the variables of `whole` that are in a fixed list: Understudy's options, and those that select
+/// libraries and drivers of OpenGL. Disables Mesa's shader cache in files.
 Environment client_environment(const Environment& whole);
 
-/// Folders, and files, in which `environment` says that libraries and drivers of OpenGL are. Names that do not
-/// begin at the root are left out.
+/// Returns the folders and files in which `environment` places libraries and drivers of OpenGL.
+/// Relative paths are omitted.
 std::vector<std::filesystem::path> folders_of_libraries(const Environment& environment);
 
 }  // namespace understudy::launcher

@@ -48,8 +48,8 @@ bool asked_to_end(SignalInbox& inbox, ClientProcessList& clients) {
   return false;
 }
 
-/// Processes of clients that have just gone have figures to write. The others end together, and whatever they
-/// do with signals.
+/// Waits for the processes of clients that have just disconnected, which still write figures; then kills the
+/// others, even if they ignore signals.
 void end_all(ClientProcessList& clients) {
   const auto until = Clock::now() + patience_with_end;
   for (reap(clients); !clients.empty() && Clock::now() < until; reap(clients))
@@ -80,7 +80,7 @@ void ClientProcess::connect_for_it(std::span<const std::string> allowed) {
 void serve_clients(const std::string& socket) {
   const Installation installation = this_installation();
   const spu::Options options = spu::options_from_environment();
-  // Tile workers are clients of this GL server, too.
+  // Tile workers are clients of this GL server, too, so its own socket is reachable.
   std::vector<std::string> reachable = {socket};
   if (!options.connect.empty()) reachable.push_back(options.connect);
   const Environment environment =

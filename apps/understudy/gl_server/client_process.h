@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The process that makes one client's calls, seen from the GL server that listens. It is executed anew, so that
-// its addresses differ from those of other clients' processes, and makes no connections of its own.
+// The process that executes one client's calls, as seen by the listening GL server. It is started by exec, so
+// that its addresses differ from those of other clients' processes, and makes no connections of its own.
 #pragma once
 
 #include <csignal>
@@ -16,15 +16,15 @@ namespace understudy::launcher {
 
 class ClientProcess {
  public:
-  /// Throws std::system_error, and std::runtime_error, where there can be no process.
+  /// Throws std::system_error or std::runtime_error if the process cannot be started.
   ClientProcess(const Installation& installation, const std::string& socket, compositor::FileDescriptor client,
                 const Environment& environment);
 
-  /// To be polled: it asks for a connection. -1 once it does not any more.
+  /// Descriptor to poll: readable when the process requests a connection. -1 when it makes no more requests.
   int channel() const { return channel_.get(); }
-  /// Connects for it, if it asks, to one of these paths.
+  /// Answers the process's request, if any, by connecting to one of the `allowed` paths.
   void connect_for_it(std::span<const std::string> allowed);
-  /// Empty while it runs.
+  /// Empty while the process runs.
   std::optional<Ending> poll_ending() { return process_->poll_ending(); }
   void kill() const { process_->signal(SIGKILL); }
 
@@ -33,8 +33,8 @@ class ClientProcess {
   std::optional<ChildProcess> process_;
 };
 
-/// Listens at a Unix socket until a signal asks for the end, with a process for each client, at most
-/// limits::max_clients at once. Throws std::runtime_error where nobody can listen.
+/// Listens at a Unix socket until a signal requests the end, with a process for each client, at most
+/// limits::max_clients at once. Throws std::runtime_error if it cannot listen.
 void serve_clients(const std::string& socket);
 
 }  // namespace understudy::launcher

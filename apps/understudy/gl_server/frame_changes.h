@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is different in a drawable's image from one frame to the next.
+// Finds what changes in a drawable's image from one frame to the next.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@ namespace understudy::launcher {
 
 class FrameChanges {
  public:
-  /// The smallest rectangle that holds all that changed since the last image of this drawable; all of it for
-  /// another extent. `rgba` has rows from the bottom, as OpenGL reads them. The pixels are those of this
-  /// object, until the next call.
+  /// Returns the smallest rectangle that contains all changes since the last image of this drawable; the whole
+  /// image if its extent has changed. `rgba` has its rows bottom up, as OpenGL reads them. The pixels belong to
+  /// this object and are valid until the next call.
   spu::ImageChange next(std::uint64_t drawable, spu::Extent2D extent, std::span<const std::uint8_t> rgba);
 
  private:
   struct Last {
     spu::Extent2D extent;
-    std::vector<std::uint32_t> pixels;  ///< rows from the top, blue in the lowest byte
+    std::vector<std::uint32_t> pixels;  ///< rows top down, blue in the lowest byte
   };
 
   std::map<std::uint64_t, Last> last_;

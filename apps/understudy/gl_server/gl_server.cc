@@ -57,10 +57,11 @@ using compositor::MessageType;
 namespace limits = compositor::limits;
 
 constexpr std::chrono::seconds patience_with_client{10};
-/// Different faults of a stream that are said.
+/// Maximum number of distinct faults of a stream that are logged.
 constexpr std::size_t most_faults_told = 20;
 
-/// What the GL server of an application is given: where its chain finds others that draw tiles of its windows.
+/// Returns the options of an application's GL server: its chain gets the socket of the GL
+/// server that runs tile workers.
 spu::Options options_of_application(const std::string& socket) {
   spu::Options options = spu::options_from_environment();
   options.chain = spu::resolved_chain(options.chain, std::filesystem::current_path());
@@ -83,7 +84,7 @@ spu::Options options_of_application(const std::string& socket) {
   return options;
 }
 
-/// A tile worker's: what units there are stand before it in the chain of the application's GL server.
+/// Returns the options of a tile worker: all other units are in the chain of the application's GL server.
 spu::Options options_of_tile_worker(const spu::TilePlace& place) {
   spu::Options options = spu::options_from_environment();
   options.chain = fmt::format("tile(part={},of={}) driver", place.part, place.parts);
@@ -91,8 +92,8 @@ spu::Options options_of_tile_worker(const spu::TilePlace& place) {
   return options;
 }
 
-/// What the options ask for is written into folders; libraries are in those of the installation and of the
-/// environment.
+/// Returns the folders that the options write to, and those of libraries: of the
+/// installation and of the environment.
 SandboxFolders folders_used(const spu::Options& options) {
   SandboxFolders folders;
   if (!options.save_frames.empty()) folders.written.emplace_back(options.save_frames);
@@ -103,12 +104,12 @@ SandboxFolders folders_used(const spu::Options& options) {
   return folders;
 }
 
-/// Draws once, with a context of its own: a driver makes its threads, and opens what it needs. Throws
-/// std::runtime_error where it cannot.
+/// Draws once with a temporary context, so that the driver creates its threads and opens its files. Throws
+/// std::runtime_error if that fails.
 Renderer draw_once(OffscreenContexts& windows, const spu::GlServerVersions& versions) {
   constexpr spu::Extent2D small{16, 16};
   spu::RecordedContext context;
-  context.number = ~std::uint64_t(0);  // applications count theirs from 1
+  context.number = ~std::uint64_t(0);  // applications number their contexts from 1
   context.version = versions.compatibility > 0 ? versions.compatibility : versions.core;
   if (versions.compatibility == 0) context.profile = GL_CONTEXT_CORE_PROFILE_BIT;
   windows.create(context);
@@ -124,8 +125,8 @@ Renderer draw_once(OffscreenContexts& windows, const spu::GlServerVersions& vers
   return renderer;
 }
 
-/// The calls of one application, played as they come; or of an application's GL server, by one of its tile
-/// workers.
+/// Executes the calls of one application as they arrive; or, as a tile worker, the calls of
+/// an application's GL server.
 class Performance {
  public:
   Performance(Connection& connection, const spu::Options& options, bool paints, const Sandbox* sandbox)
@@ -141,7 +142,7 @@ class Performance {
     };
   }
 
-  /// Returns when the application closes the connection. Throws std::runtime_error for what is no stream.
+  /// Returns when the application closes the connection. Throws std::runtime_error if the stream is malformed.
   void run() {
     const spu::GlServerVersions versions{windows_->highest_version(true), windows_->highest_version(false)};
     if (sandbox_ != nullptr) close_sandbox(versions);
@@ -160,16 +161,17 @@ class Performance {
   }
 
  private:
-  /// What opens files when it is first used has been used: from then on files are refused.
+  /// Closes the sandbox, after everything that opens files on first use has been used; from then on,
+  /// opening files is refused.
   void close_sandbox(const spu::GlServerVersions& versions) {
     compositor::usable_memory();
-    // Looks for its allocator, and for what there is of processors.
+    // TBB's first use opens its allocator and reads the number of processors.
     if (embedded_) tbb::parallel_for(0, 64, [](int) {});
     Renderer renderer = Renderer::cpu;
     try {
       renderer = draw_once(*windows_, versions);
     } catch (const std::runtime_error&) {
-      // The application is told when it makes a context.
+      // The application gets this error when it creates a context.
     }
     const SandboxState state = sandbox_->close(renderer);
     if (!state.obstacle.empty())
@@ -181,7 +183,7 @@ class Performance {
                    state.no_landlock);
   }
 
-  /// An application may be silent for as long as nobody touches it, but not within a message.
+  /// An application may be silent between messages for any time, but not within a message.
   Message next() {
     for (;;) {
       if (std::optional<Message> message = connection_.receive_some()) return std::move(*message);
@@ -231,7 +233,7 @@ class Performance {
     shown_ = changes_.next(player_.drawable(), extent, player_.shown_image());
   }
 
-  // Of a tile worker, which is asked for nothing but pixels.
+  // For a tile worker, which has to return pixels only.
 
   void show_tile() {
     const spu::Tile& tile = *spu::Chain::current()->find<spu::Tile>();
@@ -241,11 +243,11 @@ class Performance {
 
   void forget_errors() {
     if (!player_.prepare()) return;
-    // A context that is lost has one for ever.
+    // A lost context returns an error forever, so the loop is bounded.
     for (int i = 0; i < 16 && player_.driver().GetError() != GL_NO_ERROR; ++i) continue;
   }
 
-  /// Nothing where OpenGL refuses to read.
+  /// Returns the pixels; nothing if OpenGL failed to read them.
   spu::CallAnswer painted() {
     spu::CallAnswer answer;
     const spu::Decoder::ReadImage& read = player_.read_image();
@@ -265,7 +267,7 @@ class Performance {
 
   Connection& connection_;
   const bool paints_;
-  const Sandbox* const sandbox_;  ///< null: none is wanted
+  const Sandbox* const sandbox_;  ///< null: no sandbox was requested
   const bool embedded_;           ///< rays are cast in this process
   const std::unique_ptr<OffscreenContexts> windows_;
   spu::Player player_;
@@ -276,11 +278,12 @@ class Performance {
   std::set<std::string> told_;
 };
 
-/// What a process of its own does for one application, or for another GL server's. Returns its exit status.
+/// Serves one application, or another GL server as its tile worker, in a separate
+/// process. Returns its exit status.
 int perform(FileDescriptor socket, const std::string& address) {
   FileDescriptor same(::fcntl(socket.get(), F_DUPFD_CLOEXEC, 0));
   try {
-    // Nothing long is read from whoever has not said what it is.
+    // Until the client has identified itself, only short messages are read.
     Connection pending(std::move(socket), spu::gl_server_protocols, limits::max_hello_bytes);
     const Message hello = pending.receive(Clock::now() + limits::hello_patience);
     if (hello.type != compositor::LauncherMessage::hello_client)
@@ -288,11 +291,11 @@ int perform(FileDescriptor socket, const std::string& address) {
     Connection connection(std::move(same), spu::gl_server_protocols, limits::max_gl_server_message_bytes);
     try {
       const bool paints = !hello.payload.empty();
-      // The frames that a tile worker has a part in are counted by the GL server of the application.
+      // Frames that a tile worker draws a part of are counted by the application's GL server.
       if (paints) ::unsetenv("UNDERSTUDY_RUN_DIR");
       const spu::Options options = paints ? options_of_tile_worker(spu::decode_tile_place(hello.payload))
                                           : options_of_application(address);
-      spu::process_counters();  // makes a file, where there is a folder for it
+      spu::process_counters();  // creates a file, if a folder is set
       std::optional<Sandbox> sandbox;
       if (options.sandbox) sandbox.emplace(folders_used(options));
       Performance(connection, options, paints, sandbox ? &*sandbox : nullptr).run();
@@ -310,7 +313,7 @@ int perform(FileDescriptor socket, const std::string& address) {
   return 0;
 }
 
-/// Ends the process: what drivers do when a process returns is not needed, and may want files.
+/// Exits without running destructors: what drivers do at exit is not needed, and may open files.
 [[noreturn]] void serve_one(const std::string& socket, int client, int connector) {
   for (const int descriptor : {client, connector}) ::fcntl(descriptor, F_SETFD, FD_CLOEXEC);
   compositor::connect_through(FileDescriptor(connector));
@@ -341,7 +344,7 @@ void add_gl_server_command(CLI::App& app, std::function<int()>& chosen) {
   struct Arguments {
     std::string socket;
     int client = -1;     ///< descriptor of the connection to serve; -1: this process listens
-    int connector = -1;  ///< descriptor of the channel to the one that listens
+    int connector = -1;  ///< descriptor of the channel to the listening process
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* subcommand =

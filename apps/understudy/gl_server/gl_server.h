@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GL server: makes the OpenGL calls of applications that have none (`understudy run --remote`), on contexts
-// without a window system, through the chain that a viewer here would have, and sends their images back.
+// The GL server: executes the OpenGL calls of applications without OpenGL (`understudy run --remote`), on
+// contexts without a window system, through the chain that a local viewer would have, and returns their
+// images.
 //
-// One process listens; every application gets a process of its own (client_process.h), so that neither a
-// driver's faults nor a closed connection concern another one. What it draws with is opened first; then a
-// sandbox closes (apps/understudy/sandbox), and only then calls are read.
+// One process listens. Every application gets its own process (client_process.h), so that neither a crashing
+// driver nor a closed connection affects the others. This process first opens what it draws with, then closes
+// a sandbox (apps/understudy/sandbox), and only then reads calls.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -19,7 +20,7 @@
 namespace understudy::launcher {
 
 /// Starts a GL server that listens at `socket`, with the options in `environment` and no injection method.
-/// Returns once it does. Throws std::runtime_error when it does not.
+/// Returns once it listens. Throws std::runtime_error if it does not.
 std::unique_ptr<ChildProcess> start_gl_server(const Installation& installation,
                                               const std::filesystem::path& socket, Environment environment);
 

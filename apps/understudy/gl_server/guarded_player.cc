@@ -26,7 +26,7 @@ namespace {
   throw std::system_error(errno, std::generic_category(), what);
 }
 
-/// A record in memory that a child process shares.
+/// A PlayedRecord in memory shared with a child process.
 class SharedRecord {
  public:
   SharedRecord() {
@@ -51,7 +51,7 @@ std::string name_of(std::uint32_t record_id) {
   return event != nullptr ? event : "the beginning";
 }
 
-/// Signals by which a driver ends a process that it cannot go on with.
+/// Returns whether the signal is one by which a driver crashes a process.
 bool is_fault(int signal) {
   constexpr std::array<int, 5> faults = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL};
   return std::find(faults.begin(), faults.end(), signal) != faults.end();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A trace is played in a child process: what a driver does to a process that makes calls as nobody would make
-// them (a damaged trace, a driver's own fault) is told with the call at which it happened.
+// Plays a trace in a child process. If the driver crashes it, because the trace is damaged or the driver has a
+// bug, the call at which it crashed is reported.
 #pragma once
 
 #include <atomic>
@@ -10,10 +10,10 @@
 
 namespace understudy::launcher {
 
-/// The exit status where a signal of the driver's has ended the player.
+/// The exit status if the driver crashed the player.
 constexpr int player_crashed = 5;
 
-/// Which record is being played, in memory that both processes see.
+/// The record that is being played, in memory shared by both processes.
 struct PlayedRecord {
   std::atomic<std::uint32_t> id = 0;  ///< 0: none yet
   std::atomic<std::uint64_t> number = 0;
@@ -24,10 +24,10 @@ struct PlayedRecord {
   }
 };
 
-/// Calls `play` in a child process and answers what it answered there; what it throws, it throws in the child.
-/// Says which record was being played and returns `player_crashed` when a signal like SIGSEGV ended the child,
-/// 128 + signal for any other. There must be no second thread. Throws std::system_error when there is no second
-/// process.
+/// Calls `play` in a child process and returns its result; exceptions propagate in the child only. If a
+/// signal like SIGSEGV ends the child, prints the record that was being played and returns `player_crashed`;
+/// for any other signal, returns 128 + signal. This process must be single-threaded. Throws std::system_error
+/// if no child can be created.
 int play_guarded(const std::filesystem::path& trace, const std::function<int(PlayedRecord&)>& play);
 
 }  // namespace understudy::launcher

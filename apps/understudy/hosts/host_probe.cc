@@ -22,7 +22,7 @@ std::string quoted(const std::string& text) {
   return quoted + "'";
 }
 
-/// ssh must not ask for a password where nobody reads the question, nor wait longer than we do.
+/// ssh must not ask for a password, because no one sees the question, nor wait longer than this probe does.
 std::vector<std::string> command_on(const std::string& host, std::vector<std::string> agent,
                                     const std::filesystem::path& node) {
   if (std::filesystem::path(agent.front()).filename() == "ssh")
@@ -49,7 +49,7 @@ HostProbe::HostProbe(const std::vector<Host>& hosts, const std::vector<std::stri
 
 bool HostProbe::finished() {
   const auto ended = [](Question& question) { return question.process.poll_ending().has_value(); };
-  // All are looked at, so that none of them stays a zombie.
+  // All processes are polled, so that none of them stays a zombie.
   return std::ranges::count_if(questions_, ended) == std::ptrdiff_t(questions_.size()) ||
          std::chrono::steady_clock::now() > until_;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which hosts answer: the node's program is asked for its help on all of them at once, through the launch
+// Finds the hosts that answer: runs the node's program with --help on all of them at once, through the launch
 // agent.
 //
-// Open MPI gives a whole job up when one host cannot be reached, and may wait for minutes before. A group is
-// therefore started only on hosts that have just shown that they can run the program.
+// Open MPI aborts a whole job if one host cannot be reached, possibly after minutes. A group is therefore
+// started only on hosts that have just shown that they can run the program.
 #pragma once
 
 #include <chrono>
@@ -25,16 +25,17 @@ struct SilentHost {
 
 class HostProbe {
  public:
-  /// Starts one process of `agent` a host, in `environment`. What they say goes to files in `folder`. Throws
-  /// std::system_error when the agent cannot be executed.
+  /// Starts one process of `agent` per host, in `environment`, with its output in files in `folder`. Throws
+  /// std::system_error if the agent cannot be executed.
   HostProbe(const std::vector<Host>& hosts, const std::vector<std::string>& agent,
             const std::filesystem::path& node, const Environment& environment,
             const std::filesystem::path& folder);
 
-  /// All have ended, or patience has. Look again when a child of this process has ended, or a second later.
+  /// Returns whether all processes have ended or time is up. Call again when a child of this process has
+  /// ended, or after a second.
   bool finished();
 
-  /// Call once when finished: ends those that still run, and tells which hosts did not answer.
+  /// Call once when finished: ends processes that still run, and returns the hosts that did not answer.
   std::vector<SilentHost> silent();
 
  private:

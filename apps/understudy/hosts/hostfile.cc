@@ -32,7 +32,7 @@ constexpr const char* expected = "expected one host per line, as in 'node1 slots
 constexpr std::size_t longest_line = 1024;
 constexpr std::size_t most_hosts = spu::max_nodes;
 
-/// No name begins with '-': a launch agent would take it for an option.
+/// No name may begin with '-': a launch agent would take it for an option.
 bool is_host_name(std::string_view name) {
   const auto belongs = [](unsigned char c) {
     return std::isalnum(c) != 0 || std::strchr("._-:@", c) != nullptr;
@@ -147,7 +147,8 @@ bool is_this_machine(const std::string& host) {
   gethostname(own.data(), own.size() - 1);
   const std::string name = own.data();
   if (wanted == "localhost" || wanted == name) return true;
-  // Of a name in full and one cut at its first dot, the short one decides; two in full must be equal.
+  // If one of the names is short, only the parts before the first dot are compared; two
+  // full names must be equal.
   const bool one_is_short = wanted.find('.') == std::string::npos || name.find('.') == std::string::npos;
   if (one_is_short && short_name(wanted) == short_name(name)) return true;
   addrinfo hints{};

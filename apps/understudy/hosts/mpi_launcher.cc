@@ -15,7 +15,7 @@ namespace understudy::launcher {
 
 namespace {
 
-/// The first word after `key`; empty: there is no such key.
+/// Returns the first word after `key`; empty if there is no such key.
 std::string_view word_after(std::string_view text, std::string_view key) {
   const std::size_t at = text.find(key);
   if (at == std::string_view::npos) return {};
@@ -30,7 +30,7 @@ std::optional<MpiVersion> version_of(MpiFamily family, const char* name, std::st
   return MpiVersion{family, major, fmt::format("{} {}", name, number)};
 }
 
-/// What a program says of its version, on either output.
+/// Returns what the program prints for --version, on either output.
 std::string said_by(const std::filesystem::path& program) {
   std::string quoted = program.string();
   for (std::size_t at = 0; (at = quoted.find('\'', at)) != std::string::npos; at += 4)
@@ -45,7 +45,7 @@ std::string said_by(const std::filesystem::path& program) {
 
 struct Family {
   const char* name;
-  std::vector<const char*> programs;  ///< what its launcher is called, where it need not be `mpirun`
+  std::vector<const char*> programs;  ///< names of its launcher, which is not always `mpirun`
   const char* package;
 };
 

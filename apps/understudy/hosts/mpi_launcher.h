@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which MPI starts the ranks: the one that the nodes were built with, as only its own launcher can.
+// Finds the MPI that starts the ranks: it must be the one that the nodes were built with, because only its
+// own launcher can start them.
 #pragma once
 
 #include <filesystem>
@@ -14,11 +15,11 @@ enum class MpiFamily { open_mpi, mpich };
 
 struct MpiVersion {
   MpiFamily family = MpiFamily::open_mpi;
-  int major = 4;     ///< Open MPI's: from 5 on its launcher is PRRTE's, with other options
+  int major = 4;     ///< of Open MPI; from 5 on, its launcher is PRRTE, which has other options
   std::string text;  ///< "Open MPI 4.1.4"
 };
 
-/// Of what `mpirun --version` says: Open MPI's, Hydra's (MPICH), or another's: none.
+/// Parses the output of `mpirun --version` of Open MPI or Hydra (MPICH); returns none for any other.
 std::optional<MpiVersion> mpi_version(std::string_view said);
 
 struct MpiLauncher {
@@ -26,10 +27,10 @@ struct MpiLauncher {
   MpiVersion version;
 };
 
-/// The MPI that this build's nodes use; none: there are no nodes.
+/// The MPI that this build's nodes use; none: no nodes were built.
 std::optional<MpiFamily> mpi_of_nodes();
 
-/// The launcher of that family on PATH, or a sentence about what is there instead and what to install.
+/// Returns the launcher of that family on PATH, or a sentence with what is there instead and what to install.
 std::variant<MpiLauncher, std::string> find_mpi_launcher(MpiFamily family);
 
 }  // namespace understudy::launcher

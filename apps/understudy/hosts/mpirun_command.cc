@@ -14,22 +14,22 @@ void append(Words& words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
 }
 
-/// Of Open MPI before 5, whose launcher is ORTE.
+/// Options for Open MPI before 5, whose launcher is ORTE.
 Words launch_by_orte(const Placement& placement, const std::filesystem::path& folder) {
   switch (placement.launch) {
     case Launch::this_machine:
-      return {// No remote shell is looked for, no network device is needed.
+      return {// Neither a remote shell nor a network device is needed.
               "--mca", "plm", "isolated", "--mca", "btl", "self,vader",
-              // Nor are ranks put onto the nodes of an allocation, of which a login node is none.
+              // Ranks are not put onto the nodes of an allocation, to which a login node does not belong.
               "--mca", "ras", "^slurm",
-              // Its session files go when the run's folder goes, whatever happens to it, and so does the memory
-              // that ranks share, which would stay in /dev/shm when mpirun is killed.
+              // Session files are removed with the run's folder in any case, and so is the memory that ranks
+              // share, which would stay in /dev/shm when mpirun is killed.
               "--mca", "orte_tmpdir_base", folder.string(), "--mca", "btl_vader_backing_directory",
               shared_memory_folder(folder).string()};
     case Launch::remote_shell:
       return {"--mca", "plm", "rsh", "--mca", "btl", "self,vader,tcp",
-              // A host that is cut off says nothing: it is missed after three seconds of silence and three
-              // questions, where the default is minutes.
+              // A disconnected host is detected after three seconds of silence and three
+              // probes; the default is minutes.
               "--mca", "oob_tcp_keepalive_time", "3", "--mca", "oob_tcp_keepalive_intvl", "1", "--mca",
               "oob_tcp_keepalive_probes", "3"};
     case Launch::slurm:
@@ -38,7 +38,7 @@ Words launch_by_orte(const Placement& placement, const std::filesystem::path& fo
   return {};
 }
 
-/// The same for Open MPI from 5 on, whose launcher is PRRTE and whose shared memory is `sm`.
+/// The same for Open MPI from 5 on, whose launcher is PRRTE and whose shared-memory transport is `sm`.
 Words launch_by_prrte(const Placement& placement, const std::filesystem::path& folder) {
   switch (placement.launch) {
     case Launch::this_machine:
@@ -80,13 +80,13 @@ Words words_of_open_mpi(int major, const Placement& placement, const std::filesy
   const bool prrte = major >= 5;
   const bool elsewhere = placement.launch != Launch::this_machine;
   Words words;
-  // More ranks than cores are usual here, and each rank uses all the cores it finds. Host after host, in the
-  // order of the file: rank 0 on the first, which is this one.
+  // Oversubscribe: groups often have more ranks than cores. Map by slot: hosts are filled one after another in
+  // the order of the file, so that rank 0 is on the first, which is this one.
   if (prrte)
     append(words, {"--map-by", elsewhere ? "slot:OVERSUBSCRIBE" : ":OVERSUBSCRIBE"});
   else
     append(words, {"--oversubscribe"});
-  // Ranks that wait must not keep the others from their cores.
+  // Ranks that wait must yield their cores to others.
   append(words, {"--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"});
   if (elsewhere && !prrte) append(words, {"--map-by", "slot"});
   if (elsewhere && !placement.hosts.empty()) append(words, {"--hostfile", own_hostfile(folder).string()});
@@ -94,7 +94,7 @@ Words words_of_open_mpi(int major, const Placement& placement, const std::filesy
   return words;
 }
 
-/// Of MPICH, whose launcher is Hydra.
+/// Options for MPICH, whose launcher is Hydra.
 Words words_of_mpich(const Placement& placement, const std::filesystem::path& folder) {
   Words words{"-bind-to", "none"};
   if (placement.launch == Launch::this_machine) append(words, {"-launcher", "fork", "-hosts", "localhost"});
@@ -133,7 +133,7 @@ std::string own_hostfile_text(MpiFamily family, const std::vector<Host>& hosts) 
 
 Environment mpirun_environment(Environment nodes, const Placement& placement,
                                const std::filesystem::path& folder) {
-  // As orte_tmpdir_base, but for this machine alone: others have no such folder, and use their own.
+  // Like orte_tmpdir_base, but only for this machine: other hosts do not have this folder, and use their own.
   if (placement.launch == Launch::remote_shell) nodes["TMPDIR"] = folder.string();
   return nodes;
 }

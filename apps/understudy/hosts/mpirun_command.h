@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command that starts a node group, from where its ranks are to be.
+// Makes the command that starts a node group, from the placement of its ranks.
 #pragma once
 
 #include <filesystem>
@@ -13,26 +13,27 @@
 
 namespace understudy::launcher {
 
-/// The launcher and its options, for the node's program and its arguments to follow. `folder` is the run's:
-/// session files of this machine lie in it, and the file that own_hostfile_text() made.
+/// Returns the launcher and its options, to be followed by the node's program and its arguments. `folder` is
+/// the run's; it contains session files of this machine, and the file of own_hostfile_text().
 std::vector<std::string> mpirun_words(const MpiLauncher& launcher, const Placement& placement,
                                       const std::filesystem::path& folder);
 
-/// Of the environment that nodes run in, what mpirun needs.
+/// Returns the environment of mpirun, made from the nodes' environment.
 Environment mpirun_environment(Environment nodes, const Placement& placement,
                                const std::filesystem::path& folder);
 
-/// The file in a run's folder that mpirun_words() names.
+/// The file in the run's folder that mpirun_words() refers to.
 std::filesystem::path own_hostfile(const std::filesystem::path& folder);
 
-/// The hosts in it, as this MPI reads them.
+/// The content of that file, in this MPI's format.
 std::string own_hostfile_text(MpiFamily family, const std::vector<Host>& hosts);
 
-/// Where the ranks of this machine share memory, if all are on it: a folder in the run's. Must exist.
+/// Folder inside the run's folder for memory that ranks share if all are on this machine. Must exist.
 std::filesystem::path shared_memory_folder(const std::filesystem::path& folder);
 
-/// What starts a program on another host: OMPI_MCA_plm_rsh_agent's words, or those of Open MPI's usual agents.
-/// The first of its alternatives ("ssh : rsh") that `is_there`; the first one when none is.
+/// Returns the command that starts a program on another host: from OMPI_MCA_plm_rsh_agent, otherwise Open
+/// MPI's default agents. Of its alternatives ("ssh : rsh"), the first for which `is_there` holds; the
+/// first one if there is none.
 std::vector<std::string> launch_agent(const Environment& environment, bool (*is_there)(const std::string&));
 
 }  // namespace understudy::launcher

@@ -30,9 +30,9 @@ Placement in_allocation(const PlacementWish& wish, const Environment& environmen
   const std::vector<std::string> nodes = slurm_nodes(value_of(environment, "SLURM_JOB_NODELIST"));
   Placement placement;
   placement.ranks = wish.ranks.value_or(0);
-  // A shell on a login node may have an allocation elsewhere: rank 0 must be here.
+  // A shell on a login node may belong to an allocation elsewhere, but rank 0 must be on this machine.
   if (std::ranges::none_of(nodes, is_here)) return placement;
-  // One task is what an interactive shell has, and no wish for a group.
+  // An interactive shell has one task, which does not request a group.
   if (const int tasks = tasks_of(environment); !wish.ranks && tasks > 1) placement.ranks = tasks;
   if (nodes.size() > 1) placement.launch = Launch::slurm;
   return placement;

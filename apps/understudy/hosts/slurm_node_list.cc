@@ -19,7 +19,7 @@ std::optional<unsigned> number(std::string_view text) {
   return value;
 }
 
-/// "01-03,7" is 01, 02, 03, 7: as many digits as the first number of a range has.
+/// Expands "01-03,7" to 01, 02, 03, 7, with as many digits as the first number of a range has.
 std::optional<Names> numbers_in_brackets(std::string_view text) {
   Names found;
   for (;;) {
@@ -37,7 +37,7 @@ std::optional<Names> numbers_in_brackets(std::string_view text) {
   }
 }
 
-/// Of one entry between commas, which may have several pairs of brackets.
+/// Expands one entry between commas, which may have several pairs of brackets.
 std::optional<Names> names_of_entry(std::string_view entry) {
   const std::size_t open = entry.find('[');
   if (open == std::string_view::npos) return entry.empty() ? std::optional<Names>() : Names{std::string(entry)};

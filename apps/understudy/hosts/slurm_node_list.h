@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes of a Slurm allocation, as SLURM_JOB_NODELIST has them: "gpu1,node[01-03,7]".
+// Parses the nodes of a Slurm allocation, in the form of SLURM_JOB_NODELIST: "gpu1,node[01-03,7]".
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace understudy::launcher {
 
-/// Every name, in order. What cannot be understood (brackets that do not close, a range that is none, more than
-/// 4,096 names) gives no name at all.
+/// Returns every name, in order; none at all if the list is invalid (unclosed brackets, a bad
+/// range, more than 4,096 names).
 std::vector<std::string> slurm_nodes(std::string_view list);
 
 }  // namespace understudy::launcher

@@ -39,7 +39,7 @@ RgbaImage empty_image(const std::filesystem::path& path, std::int64_t width, std
   return image;
 }
 
-/// libpng's description of one image, freed on every way out.
+/// libpng's description of one image, freed in every case.
 struct PngImage {
   png_image image{};
   PngImage() { image.version = PNG_IMAGE_VERSION; }
@@ -61,7 +61,8 @@ RgbaImage read_png(const std::filesystem::path& path) {
   return image;
 }
 
-/// One PFM file: `PF` with three channels or `Pf` with one, rows bottom up, a negative scale for little endian.
+/// The content of a PFM file: `PF` with three channels or `Pf` with one, rows bottom up, a
+/// negative scale for little endian.
 struct FloatMap {
   int channels = 0;
   int width = 0;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int smallest_image_side = 16;
 
-/// Where red, green, blue and alpha stand in a pixel; -1 for a component that is not there.
+/// Positions of red, green, blue and alpha in a pixel; -1 for a missing component.
 struct Components {
   int count = 0;
   std::array<int, 4> at{-1, -1, -1, -1};
@@ -35,7 +35,7 @@ std::optional<Components> components_of(GLenum format) {
   }
 }
 
-/// Component `at` of the pixel at `pixel`, 1 for full intensity.
+/// Returns component `at` of the pixel at `pixel`; 1 is full intensity.
 float component(const std::byte* pixel, GLenum type, int count, int at) {
   switch (type) {
     case GL_UNSIGNED_BYTE:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images as OpenGL has them, made to lie as images in files do.
+// Converts images read from OpenGL to the layout of images in files.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace understudy::launcher {
 
-/// `rgba` with 8 bits, rows bottom up, as it is shown: opaque.
+/// Converts an image as shown: `rgba` with 8 bits, rows bottom up; the result is opaque.
 RgbaImage image_of(std::span<const std::uint8_t> rgba, spu::Extent2D extent);
 
-/// Nothing for what is no image: depth, indices, a few pixels as read for picking.
+/// Returns nothing for reads that are not images: depth, indices, or a few pixels as read for picking.
 std::optional<RgbaImage> image_of(const spu::Decoder::ReadImage& read);
 
 }  // namespace understudy::launcher

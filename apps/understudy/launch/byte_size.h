@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Amounts of memory on command lines: bytes, a whole number and K, M, G or T, or "auto".
+// Amounts of memory on command lines: bytes, a whole number with K, M, G or T, or "auto".
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,11 @@
 
 namespace understudy::launcher {
 
-/// 512M becomes 536870912, auto stays; otherwise says what is wrong. As CLI::Validator takes it.
+/// Converts 512M to 536870912 and leaves auto unchanged. Returns what is wrong, or an empty
+/// string, as for CLI::Validator.
 std::string to_byte_size(std::string& text);
 
-/// Of what to_byte_size() has left; 0: auto.
+/// Returns the number in a result of to_byte_size(); 0 for auto.
 std::uint64_t byte_size(const std::string& text);
 
 }  // namespace understudy::launcher

@@ -30,7 +30,7 @@ Json json_of(const TcpTraffic& traffic) {
           {key::blocks, blocks}};
 }
 
-/// Numbers are added, objects by their members; what is neither stays.
+/// Adds numbers, and objects member by member; other values stay unchanged.
 void add(Json& sum, const Json& more) {
   for (const auto& [name, value] : more.items()) {
     if (!sum.contains(name))
@@ -49,7 +49,7 @@ void write_connection_figures(const std::filesystem::path& folder, const std::st
   const compositor::LineFigures line = compositor::line_figures(connection.fd());
   Json up = json_of(connection.sent());
   Json down = json_of(connection.received());
-  down.erase(key::blocks);  // only who compresses counts
+  down.erase(key::blocks);  // blocks are counted only by the end that compresses
   const Json figures = {{key::address, address},
                         {key::connections, 1},
                         {key::up, up},

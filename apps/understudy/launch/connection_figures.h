@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What connections over TCP have done for a run: a file for each in the run's folder, written when it ends.
+// Figures of a run's TCP connections: each connection writes a file to the run's folder when it ends.
 #pragma once
 
 #include <filesystem>
@@ -10,14 +10,15 @@
 
 namespace understudy::launcher {
 
-/// Into `folder`, under a name of this process's own. Nothing happens where that cannot be.
+/// Writes the figures to a file in `folder` that is named after this process. Does nothing if that fails.
 void write_connection_figures(const std::filesystem::path& folder, const std::string& address,
                               const compositor::TcpConnection& connection);
 
-/// The sum of all connections in `folder`, as report_key::connection has it; null where there was none.
+/// Returns the sum of all connections in `folder`, in the form of
+/// report_key::connection; null if there was none.
 nlohmann::ordered_json connection_figures(const std::filesystem::path& folder);
 
-/// In one line.
+/// Returns the figures in one line.
 std::string connection_text(const nlohmann::ordered_json& figures);
 
 }  // namespace understudy::launcher

@@ -37,7 +37,7 @@ namespace limits = compositor::limits;
 
 constexpr std::chrono::seconds patience_with_listener{10};
 
-/// The file in which a listener says where it listens.
+/// The file to which a listener writes its address.
 std::filesystem::path address_file(const std::filesystem::path& folder) {
   return folder / "listener.address";
 }
@@ -48,7 +48,7 @@ void tell_address(const std::filesystem::path& folder, const std::string& addres
   std::filesystem::rename(part, address_file(folder));
 }
 
-/// What the process of one client does. Returns its exit status.
+/// Relays one client's messages, in a process of its own. Returns its exit status.
 int carry(compositor::AuthenticatedSocket client, const ConnectionRequest& connection_request,
           const ListenerPlan& plan) {
   const bool to_server = connection_request.to == Destination::gl_server;

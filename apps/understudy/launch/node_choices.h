@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the ranks of a node group go about their work, as understudy-node takes it on its command line.
+// Settings of the ranks of a node group, as understudy-node takes them on its command line.
 #pragma once
 
 #include <string>
@@ -8,19 +8,19 @@
 namespace understudy::launcher {
 
 struct NodeChoices {
-  std::string exchange = "auto";  ///< how partial images become one
-  std::string pixels = "float";   ///< what travels between ranks
-  std::string gather = "direct";  ///< how the parts of an image come to the viewer
+  std::string exchange = "auto";  ///< algorithm that composites partial images
+  std::string pixels = "float";   ///< format of the pixels that ranks exchange
+  std::string gather = "direct";  ///< how the parts of an image reach the viewer
   std::string overlap = "auto";   ///< whether images are composited while they are drawn
-  std::string packed = "auto";    ///< whether pixels are packed for their way
-  std::string backend = "cpu";    ///< who casts rays
+  std::string packed = "auto";    ///< whether pixels are packed before they are sent
+  std::string backend = "cpu";    ///< what casts the rays
   std::string gpu_memory = "auto";
   std::string sort = "auto";       ///< whether ranks divide volumes or images
-  std::string partition = "auto";  ///< where nodes that divide a volume cut it
-  std::string balance = "off";     ///< who gets how much of a volume
+  std::string partition = "auto";  ///< how a volume is partitioned among nodes that divide it
+  std::string balance = "off";     ///< load balancing between nodes
   std::vector<std::string> data;   ///< folders that clients may load volumes from
-  bool any_file = false;           ///< clients are this user's own commands
-  int image_ms = 0;                ///< that one image may take; 0: as long as its client waits
+  bool any_file = false;           ///< clients are commands of this user and may load any file
+  int image_ms = 0;                ///< time limit of one image; 0: as long as its client waits
 
   std::vector<std::string> words() const {
     std::vector<std::string> all{"--exchange", exchange,      "--pixels",     pixels,      "--gather",

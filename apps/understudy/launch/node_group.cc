@@ -22,13 +22,13 @@ namespace understudy::launcher {
 namespace {
 
 constexpr std::chrono::milliseconds housekeeping{
-    1000};  ///< the broker drops silent pending clients at such intervals
+    1000};  ///< interval at which the broker drops silent pending clients
 constexpr int patience_with_nodes_ms = 2000;
 constexpr int patience_with_mpirun_ms = 5000;
 constexpr std::chrono::seconds patience_with_lost_group{5};
 constexpr std::uintmax_t max_log_read = 65536;
 constexpr const char* nodes_log = "nodes.log";
-/// In the private folder, and told to nobody but the nodes.
+/// In the private folder; only the nodes get its path.
 constexpr const char* ranks_socket = "ranks.sock";
 constexpr std::size_t max_backend_choices = 1024;
 
@@ -46,7 +46,8 @@ std::string last_word(const std::string& line) {
   return line.substr(line.find_last_of(' ') + 1);
 }
 
-/// The one line that tells most: what a node said itself, else mpirun's verdict; empty when there is neither.
+/// Returns the most informative line: a node's own message, otherwise mpirun's verdict;
+/// empty if there is neither.
 std::string last_words(const std::filesystem::path& log, std::uintmax_t from) {
   constexpr std::string_view from_node = "understudy-node: ";
   constexpr std::string_view from_mpirun = "mpirun noticed that ";
@@ -82,10 +83,11 @@ Command mpirun_command(const Installation& installation, const NodeGroupPlan& pl
   return command;
 }
 
-/// An image that nobody waits for any longer may take its time, and the ranks do not hang.
+/// An image whose application has disconnected may still take its time limit; only after that are
+/// the ranks considered hung.
 compositor::BrokerPatience patience_with(const NodeChoices& choices) {
   compositor::BrokerPatience patience;
-  // Below what a rank can tell.
+  // Below the longest time that rank 0 can report.
   constexpr std::chrono::milliseconds most(compositor::limits::max_unwanted_ms - 5000);
   patience.unwanted = std::min(patience.unwanted + std::chrono::milliseconds(choices.image_ms), most);
   return patience;
@@ -140,7 +142,7 @@ NodeGroup::NodeGroup(const Installation& installation, const NodeGroupPlan& plan
       broker_(
           {.applications = plan.socket, .nodes = plan.folder / ranks_socket},
           [this](const std::string& line) {
-            // The loss of the group is told once, with its reason, when mpirun has ended.
+            // The loss of the group is reported once, with its reason, when mpirun has ended.
             if (broker_.lost())
               why_lost_ = line;
             else
@@ -152,7 +154,7 @@ NodeGroup::NodeGroup(const Installation& installation, const NodeGroupPlan& plan
 
 NodeGroup::~NodeGroup() {
   if (!mpirun_) return;
-  // A group whose connection closes ends by itself, and sooner than mpirun ends one that it must signal.
+  // A group whose connection closes ends by itself, and sooner than mpirun ends a group that it must signal.
   const bool ends_by_itself = broker_.node_group_ready();
   broker_.dismiss_node_group();
   if (ends_by_itself && mpirun_->wait_for_ending(patience_with_nodes_ms)) return;
@@ -168,8 +170,9 @@ void NodeGroup::start() {
 }
 
 void NodeGroup::start_on(const Placement& placement) {
-  // What a group that was killed has left goes, and not only with the run. The next group has a folder of its
-  // own: ranks of the last one that still end remove Open MPI's session folder while the new mpirun makes it.
+  // Remove what a killed group has left now, not only at the end of the run. The next group gets a new
+  // folder, because ranks of the last group that are still ending remove Open MPI's session folder while
+  // the new mpirun creates it.
   std::error_code not_removed;
   std::filesystem::remove_all(group_folder_, not_removed);
   group_folder_ = plan_.folder / fmt::format("group-{}", ++groups_);
@@ -234,12 +237,13 @@ void NodeGroup::wait_and_serve(int other) {
 
 void NodeGroup::end_what_hangs() {
   if (!mpirun_) return;
-  // A group that lost its rank 0 is ended by mpirun, which crashes when it is signalled in the midst of that
-  // (4.1.4): only one that does not get anywhere is ended from here. Its end is seen in look_after_children.
-  // The broker also says lost() of the group before this one, until this one is there.
+  // A group that has lost its rank 0 is ended by mpirun, which crashes if it is signalled while doing so
+  // (4.1.4). So only a group that makes no progress is ended from here; look_after_children() notices its end.
+  // Until this group is ready, broker_.lost() refers to the previous one.
   const bool was_there = broker_.lost() && started_at_ < lost_at_;
   const bool lost = was_there && Clock::now() > lost_at_ + patience_with_lost_group;
-  // On this machine too: mpirun 4.1.4 now and then hangs for good when a rank dies before all have met.
+  // This applies on this machine, too: mpirun 4.1.4 occasionally hangs forever if a rank dies
+  // before all have connected.
   const bool never_came = !was_there && !ready() && Clock::now() > started_at_ + patience_with_start;
   if (!lost && !never_came) return;
   why_ended_ = lost ? why_lost_ : why_not_started(plan_.placement.launch);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The render nodes behind one socket of this machine: a broker that owns the socket, and mpirun with N ranks
-// behind it, here or on several hosts.
+// The render nodes behind one socket of this machine: a broker that owns the socket, and mpirun with N ranks,
+// on this machine or on several hosts.
 //
-// OpenMPI ends a whole job when one rank dies. The socket is therefore the broker's, not the nodes': a lost
-// group is replaced by a new one (a bounded number of times, with growing pauses), and viewers find it at the
-// same address. Groups on other hosts are started on those that have just answered. A group that hangs is
-// noticed by the broker, and ended from here.
+// Open MPI ends a whole job when one rank dies. The socket therefore belongs to the broker, not to the nodes: a
+// lost group is replaced by a new one (a bounded number of times, with growing pauses), and viewers find it at
+// the same address. Groups on other hosts are started only on hosts that have just answered. The broker detects
+// a group that hangs; this class ends it.
 #pragma once
 
 #include <chrono>
@@ -26,40 +26,41 @@
 
 namespace understudy::launcher {
 
-/// From mpirun's start to rank 0's hello.
+/// Time from the start of mpirun to rank 0's hello.
 constexpr std::chrono::seconds patience_with_start{60};
 
 struct NodeGroupPlan {
   Placement placement{Launch::this_machine, 1, {}};
   std::filesystem::path socket;
-  std::filesystem::path folder;  ///< private, for the nodes' socket and log, and mpirun's own files; must exist
+  std::filesystem::path folder;  ///< private, for the nodes' socket and log, and for mpirun's files; must exist
   NodeChoices choices;
 };
 
-/// Why no nodes can be started here, with the fix, in one line; empty when they can.
+/// Returns why no nodes can be started here, with the fix, in one line; empty if they can.
 std::string obstacle_to_nodes(const Installation& installation);
 
-/// What the nodes in `folder` have said about who casts their rays, and why: a line for each choice.
+/// Returns the backends that the nodes in `folder` have reported, and why: a line for each choice.
 std::vector<std::string> backend_choices(const std::filesystem::path& folder);
 
 class NodeGroup {
  public:
-  /// Takes the sockets and starts mpirun, or first asks the other hosts whether they answer; returns without
-  /// waiting for either. Throws std::runtime_error (socket taken, mpirun or the launch agent cannot be
-  /// executed).
+  /// Opens the sockets and starts mpirun, or first probes whether the other hosts answer; returns
+  /// without waiting for either. Throws std::runtime_error (socket in use, mpirun or the launch
+  /// agent cannot be executed).
   NodeGroup(const Installation& installation, const NodeGroupPlan& plan);
   NodeGroup(const NodeGroup&) = delete;
   NodeGroup& operator=(const NodeGroup&) = delete;
   ~NodeGroup();
 
   bool ready() const { return broker_.node_group_ready(); }
-  /// Of the group that is there; 0 without one.
+  /// Number of ranks of the present group; 0 without one.
   int ranks() const { return broker_.ranks(); }
 
-  /// Waits until something happens on the broker's sockets or on `other`, or a restart is due, and serves it.
+  /// Waits for an event on the broker's sockets or on `other`, or for a restart to be due, and handles it.
   void wait_and_serve(int other);
 
-  /// Call when a child of this process may have ended: a lost group is said in one line and planned anew.
+  /// Call when a child of this process may have ended: reports a lost group in one
+  /// line and schedules a restart.
   void look_after_children();
 
  private:
@@ -75,15 +76,15 @@ class NodeGroup {
   Installation installation_;
   NodeGroupPlan plan_;
   compositor::Broker broker_;
-  std::optional<HostProbe> probe_;       ///< before a start
-  std::optional<MpiLauncher> launcher_;  ///< asked for its version once: the broker waits meanwhile
+  std::optional<HostProbe> probe_;       ///< exists before a start on other hosts
+  std::optional<MpiLauncher> launcher_;  ///< its version is queried once, because the broker waits meanwhile
   std::optional<ChildProcess> mpirun_;
-  std::filesystem::path group_folder_;  ///< in the plan's folder: what mpirun_ keeps there
+  std::filesystem::path group_folder_;  ///< folder inside the plan's folder, for the files of mpirun_
   int groups_ = 0;                      ///< started so far
   Clock::time_point started_at_;
-  std::string why_lost_;          ///< the broker's words
-  std::string why_ended_;         ///< if the group had to be ended from here
-  std::uintmax_t log_start_ = 0;  ///< where the present group's lines begin
+  std::string why_lost_;          ///< the broker's message
+  std::string why_ended_;         ///< reason, if the group had to be ended from here
+  std::uintmax_t log_start_ = 0;  ///< position in the log where the present group's lines begin
   Clock::time_point lost_at_;
   Restarts restarts_;
   std::optional<Clock::time_point> next_start_;

@@ -31,7 +31,7 @@ FileDescriptor checked(int descriptor) {
   return FileDescriptor(descriptor);
 }
 
-/// Ready when one of them is.
+/// Returns a descriptor that is readable when one of `descriptors` is.
 FileDescriptor either(std::initializer_list<int> descriptors) {
   FileDescriptor both = checked(epoll_create1(EPOLL_CLOEXEC));
   for (const int descriptor : descriptors) {
@@ -72,7 +72,7 @@ std::vector<std::string> with_own_nodes(
       trouble = std::current_exception();
     }
     constexpr std::uint64_t one = 1;
-    // An eventfd takes a one at any time.
+    // A write of one to an eventfd never blocks here.
     [[maybe_unused]] const ssize_t written = ::write(job_over.get(), &one, sizeof one);
   });
   const auto is_over = [&] { return compositor::wait_until_ready(job_over.get(), POLLIN, {}); };
@@ -92,7 +92,7 @@ std::vector<std::string> with_own_nodes(
   thread.join();
   if (interrupted) throw std::runtime_error("interrupted");
   if (trouble) std::rethrow_exception(trouble);
-  group.reset();  // their log is complete now
+  group.reset();  // completes the nodes' log
   return backend_choices(folder.path());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A job that has render nodes for as long as it takes.
+// Runs a job with render nodes that exist for its duration.
 #pragma once
 
 #include <functional>
@@ -17,10 +17,10 @@ struct OwnNodes {
   NodeChoices choices;
 };
 
-/// Starts the ranks and runs `job` on a thread of its own, with the nodes' socket, while this thread looks
-/// after them. Returns what the nodes said about who casts their rays. A signal that asks for the end takes the
-/// nodes away and asks the job to stop, so that it fails soon. What the job throws is thrown on. Throws
-/// std::runtime_error where no nodes can be started.
+/// Starts the ranks and runs `job` on a separate thread, with the nodes' socket, while this thread
+/// supervises the nodes. Returns the backends that the nodes reported. A termination signal ends the nodes
+/// and requests the job to stop, so that it fails soon. Rethrows what the job throws. Throws
+/// std::runtime_error if no nodes can be started.
 std::vector<std::string> with_own_nodes(
     const OwnNodes& own,
     const std::function<void(const std::string& socket, const std::stop_token& stop)>& job);

@@ -56,8 +56,8 @@ compositor::AuthenticatedSocket linked(const ConnectionPlan& plan) {
                                  Clock::now() + limits::hello_patience);
 }
 
-/// Ends both connections when a signal asks for the end, so that who carries between them comes to an end and
-/// can say what it has done. To be made before there are other threads.
+/// Shuts down both connections when a signal requests the end, so that the relay returns and can write its
+/// figures. To be constructed before other threads exist.
 class EndWhenAsked {
  public:
   EndWhenAsked(int here, int connection)
@@ -76,7 +76,7 @@ class EndWhenAsked {
   std::jthread thread_;
 };
 
-/// What the process of one application here does. Returns its exit status.
+/// Relays the messages of one local application, in a process of its own. Returns its exit status.
 int carry(FileDescriptor application, const ConnectionPlan& plan, const std::filesystem::path& figures) {
   const bool to_server = plan.connection_request.to == Destination::gl_server;
   const std::uint64_t most = to_server ? limits::max_gl_server_message_bytes : limits::max_message_bytes;
@@ -95,7 +95,7 @@ int carry(FileDescriptor application, const ConnectionPlan& plan, const std::fil
     if (!why.empty()) logging::log(logging::Level::warn, "the connection to {}: {}", plan.address, why);
     return why.empty() ? 0 : 1;
   } catch (const std::exception& error) {
-    // The application says it where it says such things.
+    // The application reports the error where it reports its own.
     here.send(compositor::LauncherMessage::refused, 0, compositor::encode_text(error.what()),
               Connection::now_or_never());
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Connections to nodes and GL servers on other machines: a process that listens at a Unix socket here, so that
-// viewers meet nodes or a GL server as they do on one machine, and carries what they say over TCP
+// Connections to nodes and GL servers on other machines: a process listens at a local Unix socket, which
+// viewers use like that of local nodes or a local GL server, and relays messages over TCP
 // (compositor/transport/tcp).
 #pragma once
 
@@ -19,26 +19,26 @@ namespace understudy::launcher {
 struct ConnectionPlan {
   std::string address;  ///< host:port
   std::filesystem::path secret_file;
-  std::filesystem::path key_file;    ///< with server_key, in place of a secret
+  std::filesystem::path key_file;    ///< with server_key, instead of a secret
   std::filesystem::path server_key;  ///< the public key of the server
   compositor::ConnectionRequest connection_request;
 
   bool has_credentials() const { return !secret_file.empty() || !key_file.empty(); }
 };
 
-/// What to do for a connection to `address` without credentials.
+/// Returns the message for a connection to `address` without credentials.
 std::string lack_of_credentials(const std::string& address);
 
-/// Whether both sides prove themselves, now. Throws std::runtime_error: what is wrong, and what to do.
+/// Checks that both ends authenticate each other. Throws std::runtime_error with what is wrong and what to do.
 void try_connection(const ConnectionPlan& plan);
 
-/// Returns once it listens at `socket`. What each of its connections has done, it leaves in `folder`
-/// (connection_figures.h). Throws std::runtime_error.
+/// Starts the relay; returns once it listens at `socket`. The relay writes the figures of each connection to
+/// `folder` (connection_figures.h). Throws std::runtime_error.
 std::unique_ptr<ChildProcess> start_relay(const Installation& installation, const ConnectionPlan& plan,
                                           const std::filesystem::path& socket,
                                           const std::filesystem::path& folder);
 
-/// Does `job` with a socket behind which are the nodes at `address`; their images are gathered in `pixels`
+/// Runs `job` with a socket that leads to the nodes at `address`; their images are sent in the format `pixels`
 /// (compositor::set_layout). Throws what the job throws, and std::runtime_error.
 void with_connection(ConnectionPlan plan, const std::string& address, const std::string& pixels,
                      const std::function<void(const std::string& socket)>& job);

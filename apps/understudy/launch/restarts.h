@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often a lost group of nodes is started again, and after which pause.
+// Decides how often a lost group of nodes is restarted, and after which pause.
 #pragma once
 
 #include <chrono>
@@ -8,15 +8,16 @@
 namespace understudy::launcher {
 
 constexpr int max_restarts = 5;
-constexpr std::chrono::milliseconds first_pause{200};  ///< before a restart; doubles each time
-/// A group that has lived so long makes up for one that was lost before.
+constexpr std::chrono::milliseconds first_pause{200};  ///< pause before the first restart; doubles each time
+/// A group that has lived this long compensates for one earlier loss.
 constexpr std::chrono::seconds restart_forgiven_after{60};
 
 class Restarts {
  public:
-  /// A group that lived so long is lost: the pause before the next one; nothing when there were too many.
+  /// Call when a group that has lived this long is lost. Returns the pause before the next one;
+  /// nothing after too many losses.
   std::optional<std::chrono::milliseconds> after(std::chrono::steady_clock::duration lived);
-  /// Those that are not forgiven, this one too.
+  /// Number of uncompensated losses, including this one.
   int count() const { return count_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the processes of a run have counted, once they have ended.
+// The counters of a run's processes, once they have ended.
 #pragma once
 
 #include <filesystem>
@@ -15,23 +15,23 @@ constexpr int server_lost = 4;
 
 class RunFigures {
  public:
-  /// Of the processes that counted in `folder`.
+  /// Reads the counters of the processes in `folder`.
   explicit RunFigures(const std::filesystem::path& folder);
 
   spu::Processes processes() const { return processes_; }
-  /// Whether any process of the viewer ended a frame.
+  /// Returns whether any process of the viewer ended a frame.
   bool saw_frames() const;
-  /// The summary, and which figures are missing in it.
+  /// Returns the summary, including which figures are missing.
   std::string summary() const;
-  /// The exit status of a run in which frames had to be substituted; `viewer`, the viewer's own, where that
-  /// tells of a failure.
+  /// Returns the exit status of a run that requires substituted frames; the viewer's own status,
+  /// `viewer`, if that is a failure.
   int required_status(int viewer) const;
 
  private:
   std::string folder_;
   std::vector<spu::MappedCounters> counters_;
   std::vector<const spu::ProcessCounters*> processes_;
-  std::size_t without_ = 0;  ///< processes that could not keep theirs
+  std::size_t without_ = 0;  ///< number of processes that could not store their counters
 };
 
 }  // namespace understudy::launcher

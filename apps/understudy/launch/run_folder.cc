@@ -20,13 +20,13 @@ namespace understudy::launcher {
 namespace {
 
 constexpr const char* prefix = "understudy-run-";
-/// In every folder that a launcher made: one of such a name may also be a user's own.
+/// Marks folders made by a launcher: a user's own folder may have such a name, too.
 constexpr const char* mark = ".made-by-understudy";
 
-/// A launcher locks its folder right after making it; younger ones are left alone for that moment.
+/// A launcher locks its folder right after creating it; folders younger than this are left alone.
 constexpr std::time_t young_seconds = 10;
 
-/// The lock and not a process id tells: /tmp may be shared by containers that number processes differently.
+/// Decides by the lock instead of a process id: containers that share /tmp have separate process ids.
 void remove_folders_of_dead_launchers(const std::filesystem::path& parent) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(parent, error)) {
@@ -61,7 +61,7 @@ RunFolder::RunFolder() {
 
 RunFolder::RunFolder(std::filesystem::path made_for_it) : path_(std::move(made_for_it)) {
   struct stat about {};
-  // What is in it is removed at the end: nothing of it may be anybody else's.
+  // The content is removed at the end, so none of it may belong to anybody else.
   if (lstat(path_.c_str(), &about) != 0 || !S_ISDIR(about.st_mode) || about.st_uid != geteuid() ||
       (about.st_mode & 07777) != 0700 || !std::filesystem::is_empty(path_))
     throw std::runtime_error(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The private folder of one run: counters of the viewer's processes, the socket of its nodes, their log. Mode
-// 0700 in compositor::runtime_folder(), removed with everything in it at the end.
+// The private folder of one run: counters of the viewer's processes, the socket of its nodes, and their log.
+// Mode 0700 in compositor::runtime_folder(), removed with its content at the end.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,10 @@ namespace understudy::launcher {
 
 class RunFolder {
  public:
-  /// Also removes what launchers that were killed without warning left behind. Throws std::system_error.
+  /// Creates the folder. Also removes the folders of launchers that were killed. Throws std::system_error.
   RunFolder();
-  /// Takes over a folder that was made for it; removed at the end like one of its own. Throws
-  /// std::runtime_error when it is not private, or not empty.
+  /// Takes over an existing folder, which is removed at the end, too. Throws std::runtime_error if it is
+  /// not private, or not empty.
   explicit RunFolder(std::filesystem::path made_for_it);
   RunFolder(const RunFolder&) = delete;
   RunFolder& operator=(const RunFolder&) = delete;
@@ -24,7 +24,7 @@ class RunFolder {
   void lock();
 
   std::filesystem::path path_;
-  int lock_ = -1;  ///< held while the launcher lives: how the next one knows a dead launcher's folder
+  int lock_ = -1;  ///< held while the launcher lives; tells other launchers that the folder is in use
 };
 
 }  // namespace understudy::launcher

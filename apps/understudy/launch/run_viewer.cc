@@ -47,28 +47,28 @@ namespace {
 constexpr int not_executable = 126;
 constexpr int cannot_start_viewer = 127;
 constexpr int server_patience_ms = 5000;
-/// Of a viewer whose calls a GL server makes: nothing is recognised in its own process. A chain that is to
-/// stand there ends in remote.
+/// Chain of a viewer whose calls a GL server executes: nothing is recognised in the viewer's process. A chain
+/// that runs in such a viewer ends in remote.
 constexpr const char* remote_chain = "pack remote";
 
 bool stands_in_viewer(const std::string& chain) {
   return spu::parse_chain(chain).back().name == "remote";
 }
 
-/// The options of this run: the environment's, and over them the command line's.
+/// Returns the options of this run: from the environment, overridden by the command line.
 spu::Options options_of(const RunArguments& arguments) {
   spu::Options options = spu::options_from_environment();
   for (const auto& [environment, value] : arguments.settings) spu::set_option(options, environment, value);
   return options;
 }
 
-/// The viewer may change its folder: paths are told to it absolutely.
+/// Makes paths absolute, because the viewer may change its working directory.
 std::string absolute_or_empty(const std::string& path) {
   return path.empty() ? path : std::filesystem::absolute(path).string();
 }
 
-/// The loader divides its lists at these characters. Where the path to the libraries has one, the viewer is
-/// given a link to them.
+/// The loader splits its lists at these characters. If the path to the libraries contains one, the viewer
+/// gets a symbolic link to them.
 Installation within_a_list(Installation installation, const RunFolder& folder) {
   if (installation.libraries.string().find_first_of(" \t:;") == std::string::npos) return installation;
   const std::filesystem::path link = folder.path() / "lib";
@@ -84,7 +84,7 @@ Environment viewer_environment(const RunArguments& arguments, const spu::Options
   for (const auto& [name, value] : arguments.settings) environment[name] = value;
   environment["UNDERSTUDY_RUN_DIR"] = folder.path();
   environment["UNDERSTUDY_CHAIN"] = options.chain;
-  // The report is the launcher's to write, from all processes of the run.
+  // The launcher writes the report, from all processes of the run.
   environment.erase("UNDERSTUDY_REPORT");
   if (!options.save_frames.empty())
     environment["UNDERSTUDY_SAVE_FRAMES"] = absolute_or_empty(options.save_frames);
@@ -107,8 +107,8 @@ Environment viewer_environment(const RunArguments& arguments, const spu::Options
   return environment;
 }
 
-/// The GL server has the options of this run and no injection method; the viewer hands it everything. Returns
-/// what must stay alive.
+/// Starts a GL server with the options of this run and no injection method; the viewer sends it all calls.
+/// Returns the server, which must stay alive.
 std::unique_ptr<ChildProcess> put_on_gl_server(const Installation& installation, Environment& viewer,
                                                const Environment& without_injection, const RunFolder& folder,
                                                const std::string& viewer_chain) {
@@ -119,7 +119,7 @@ std::unique_ptr<ChildProcess> put_on_gl_server(const Installation& installation,
   return server;
 }
 
-/// Of a viewer whose calls are made on another machine.
+/// Sets the environment of a viewer whose calls are executed on another machine.
 void put_on_gl_server_elsewhere(Environment& viewer, const std::filesystem::path& socket,
                                 const std::string& viewer_chain) {
   viewer["UNDERSTUDY_REMOTE"] = socket;
@@ -127,8 +127,8 @@ void put_on_gl_server_elsewhere(Environment& viewer, const std::filesystem::path
   viewer.erase("UNDERSTUDY_CONNECT");
 }
 
-/// How to get at what --connect names, if that is on another machine. Throws std::runtime_error for an address
-/// that is none, and for one without a secret.
+/// Returns the plan of the connection if --connect names another machine. Throws std::runtime_error for an
+/// invalid address, and if there are no credentials.
 std::optional<ConnectionPlan> connection_of(const RunArguments& arguments, const spu::Options& options) {
   if (options.connect.empty() || options.disable) return {};
   const auto address = compositor::tcp_address_of(options.connect);
@@ -144,7 +144,8 @@ std::optional<ConnectionPlan> connection_of(const RunArguments& arguments, const
   return plan;
 }
 
-/// Nodes elsewhere may come, and a wrong secret may be put right, while the viewer draws by itself.
+/// Reports a connection that fails, but continues: nodes may start, or a wrong secret be corrected, while
+/// the viewer draws by itself.
 void tell_whether_connection_is_there(const ConnectionPlan& connection) {
   try {
     try_connection(connection);
@@ -154,14 +155,14 @@ void tell_whether_connection_is_there(const ConnectionPlan& connection) {
   }
 }
 
-/// -n, if it was given: 0 of them is a wish too.
+/// Returns -n, if it was given, even as 0.
 std::optional<int> wished_nodes(const RunArguments& arguments, const spu::Options& options) {
   constexpr const char* variable = "UNDERSTUDY_NODES";
   if (arguments.settings.contains(variable) || std::getenv(variable) != nullptr) return options.nodes;
   return {};
 }
 
-/// Nodes are a help, never a condition: whatever keeps them from starting, the viewer runs.
+/// Starts the nodes, if any are planned. If they cannot be started, the viewer runs without them.
 std::unique_ptr<NodeGroup> start_nodes(const Installation& installation, std::optional<NodeGroupPlan>& plan) {
   if (!plan) return nullptr;
   std::string obstacle = obstacle_to_nodes(installation);
@@ -177,8 +178,8 @@ std::unique_ptr<NodeGroup> start_nodes(const Installation& installation, std::op
   return nullptr;
 }
 
-/// A group that is not there yet may still come; its user should know that it is not. The socket is only looked
-/// at: a group takes whoever connects for a viewer.
+/// Tells the user if no group listens yet; one may still start. Only checks that the socket exists, because a
+/// group takes any connection for a viewer.
 void tell_whether_nodes_can_answer(const std::string& socket) {
   std::error_code unreadable;
   if (std::filesystem::is_socket(socket, unreadable)) return;
@@ -207,14 +208,14 @@ Ending wait_for(ChildProcess& viewer, NodeGroup* nodes, SignalInbox& inbox) {
   }
 }
 
-/// The report, with what only the launcher knows: who cast the rays, and what went over TCP.
+/// Adds to the report what only the launcher has: the backends, and the TCP traffic.
 std::string with_the_launchers(const std::string& report, const std::vector<std::string>& backends,
                                const nlohmann::ordered_json& connection) {
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(report);
   json[spu::report_key::origin] = origin();
   json[spu::report_key::backends] = backends;
   json[spu::report_key::connection] = connection;
-  // A command's words are whatever bytes the user's file names have.
+  // File names in the command may be invalid UTF-8.
   return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -237,14 +238,14 @@ void tell_what_happened(const spu::Options& options, bool quiet, const RunFolder
   }
 }
 
-/// Where a viewer ended early and could have had no window: what is missing.
+/// If a viewer without a display failed before its first frame, reports that DISPLAY is not set.
 void tell_of_a_missing_display(const Ending& ending, const RunFigures& figures) {
   if (ending.exit_status() == 0 || std::getenv("DISPLAY") != nullptr || figures.saw_frames()) return;
   say("DISPLAY is not set: a viewer with windows needs an X server, for example: Xvfb :99 -screen 0 "
       "1280x1024x24 +extension GLX -noreset & export DISPLAY=:99");
 }
 
-/// The run cannot begin; the text says why and what to do.
+/// The run cannot start; the message says why and what to do.
 class CannotRun : public std::runtime_error {
  public:
   explicit CannotRun(const std::string& why, int status = usage_error)
@@ -255,16 +256,16 @@ class CannotRun : public std::runtime_error {
   int status_;
 };
 
-/// What is known before anything is started.
+/// What is decided before anything is started.
 struct RunPlan {
   spu::Options options;
-  std::string viewer_chain = remote_chain;   ///< of a viewer whose calls a GL server makes
+  std::string viewer_chain = remote_chain;   ///< for a viewer whose calls a GL server executes
   std::optional<ConnectionPlan> connection;  ///< to another machine
   bool may_have_nodes = false;
   Placement placement;
 };
 
-/// Throws CannotRun for options that exclude each other.
+/// Throws CannotRun for contradictory options.
 void check_combination(const RunArguments& arguments, const spu::Options& options) {
   if (!arguments.remote && arguments.injection && stands_in_viewer(options.chain))
     throw CannotRun("a chain that ends in remote needs a GL server, which executes the calls; add --remote");
@@ -281,7 +282,7 @@ std::optional<ConnectionPlan> checked_connection(const RunArguments& arguments, 
   std::optional<ConnectionPlan> connection;
   try {
     connection = connection_of(arguments, options);
-    // The viewer has no other OpenGL, and is better not started than without any.
+    // The viewer has no other OpenGL, so it is not started without a connection.
     if (connection && arguments.remote) try_connection(*connection);
   } catch (const std::runtime_error& error) {
     throw CannotRun(error.what(), connection ? 1 : usage_error);
@@ -292,7 +293,7 @@ std::optional<ConnectionPlan> checked_connection(const RunArguments& arguments, 
   return connection;
 }
 
-/// Options that come by the environment have not been checked. Throws CannotRun.
+/// Checks output files, because options from the environment have not been checked. Throws CannotRun.
 void check_outputs(const spu::Options& options) {
   const std::string report = options.report.empty() ? "" : obstacle_to_writing(options.report);
   if (!report.empty()) throw CannotRun("--report: " + report);
@@ -325,7 +326,7 @@ RunPlan plan_of(const RunArguments& arguments) {
   return plan;
 }
 
-/// The nodes of this run, if it is to have any.
+/// Returns the plan of this run's nodes, if any.
 std::optional<NodeGroupPlan> nodes_of(const RunArguments& arguments, const RunPlan& plan,
                                       const RunFolder& folder) {
   if (plan.placement.ranks == 0 || !plan.may_have_nodes) return {};
@@ -344,7 +345,7 @@ std::optional<NodeGroupPlan> nodes_of(const RunArguments& arguments, const RunPl
                         .balance = arguments.balance}};
 }
 
-/// Says which options change nothing in this run.
+/// Reports options that have no effect in this run.
 void tell_options_without_effect(const RunArguments& arguments, const RunPlan& plan, bool has_nodes) {
   if (!has_nodes && arguments.backend != "cpu")
     say(fmt::format(
@@ -376,7 +377,7 @@ void tell_options_without_effect(const RunArguments& arguments, const RunPlan& p
     say("--tiles has no effect on a GL server elsewhere; give it to understudy serve --gl-server");
 }
 
-/// The relay to another machine, if there is one; the viewer connects to its socket then.
+/// Starts the relay to another machine, if there is one; the viewer then connects to its socket.
 std::unique_ptr<ChildProcess> start_connection(const RunArguments& arguments, RunPlan& plan,
                                                const Installation& installation, const RunFolder& folder,
                                                const std::filesystem::path& socket) {
@@ -391,7 +392,7 @@ std::unique_ptr<ChildProcess> start_connection(const RunArguments& arguments, Ru
   return nullptr;
 }
 
-/// The GL server of this run, if it has one. Throws CannotRun where it cannot be started.
+/// Starts the GL server of this run, if it has one. Throws CannotRun if it cannot be started.
 std::unique_ptr<ChildProcess> start_server(const RunArguments& arguments, const RunPlan& plan,
                                            const Installation& installation, const RunFolder& folder,
                                            const std::optional<NodeGroupPlan>& nodes,

@@ -7,7 +7,7 @@
 
 namespace understudy {
 
-/// A line for the user who watches a command start.
+/// Prints a line for the user of a command.
 inline void say(const std::string& line) {
   logging::log(logging::Level::info, "{}", line);
 }

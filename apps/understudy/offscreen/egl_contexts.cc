@@ -17,7 +17,7 @@ namespace {
 
 using volume::offscreen::Egl;
 
-/// EGL_PLATFORM=device looks for devices before Mesa's surfaceless platform.
+/// EGL_PLATFORM=device probes devices before Mesa's surfaceless platform.
 Egl::First first_platform() {
   const char* named = std::getenv("EGL_PLATFORM");
   return named != nullptr && std::string_view(named) == "device" ? Egl::First::devices
@@ -35,7 +35,7 @@ struct EglContexts::Library : Egl {
     return value;
   }
 
-  /// The configuration that differs least: what is missing weighs more than what is too much.
+  /// Returns the closest configuration: missing bits weigh more than excess bits.
   EGLConfig config_for(const spu::RecordedContext& wanted) const {
     EGLint count = 0;
     GetConfigs(display, nullptr, 0, &count);
@@ -111,8 +111,8 @@ void EglContexts::create(const spu::RecordedContext& wanted) {
   contexts_[wanted.number] = {.config = egl_->config_for(wanted), .context = context_for(wanted), .own = {}};
 }
 
-/// What a new drawable holds is undefined; here it is the same every time. The recorded context's state is not
-/// touched: another context does it.
+/// Clears a new drawable, whose content is undefined, so that every replay is the same. Uses a temporary
+/// context, so that the state of the recorded context is unchanged.
 void EglContexts::clear(void* config, void* surface) {
   const EGLContext cleaner = egl_->CreateContext(egl_->display, config, EGL_NO_CONTEXT, nullptr);
   if (cleaner == EGL_NO_CONTEXT) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contexts on EGL without a window system, each with a pbuffer of its own, or with those that stand for an
-// application's windows.
+// Contexts on EGL without a window system, each with its own pbuffer, or with pbuffers that represent
+// an application's windows.
 #pragma once
 
 #include <map>
@@ -36,7 +36,7 @@ class EglContexts final : public OffscreenContexts {
 
   std::unique_ptr<Library> egl_;
   std::map<std::uint64_t, Context> contexts_;
-  /// By configuration and number of the drawable: contexts of several configurations may draw into a window.
+  /// By configuration and number of the drawable: contexts of several configurations may draw to one window.
   std::map<std::pair<void*, std::uint64_t>, Surface> surfaces_;
   spu::DispatchTable driver_{};
 };

@@ -15,7 +15,7 @@
 namespace understudy::launcher {
 namespace {
 
-/// Tried from the first on.
+/// Probed in this order.
 constexpr std::array<int, 8> versions = {460, 450, 430, 330, 320, 310, 300, 210};
 
 }  // namespace
@@ -64,7 +64,7 @@ std::unique_ptr<OffscreenContexts> open_offscreen_contexts(std::string_view libr
     if (library == "egl") throw;
     obstacle = error.what();
   }
-  // Both libraries are Mesa's and share what is current: here EGL has made nothing current.
+  // Both libraries are Mesa's and share the current context; EGL has made none current here.
   std::unique_ptr<OffscreenContexts> contexts;
   try {
     contexts = std::make_unique<OsmesaContexts>();

@@ -32,7 +32,7 @@ OsmesaContexts::~OsmesaContexts() {
   for (const auto& [number, context] : contexts_) end_context(context.context);
 }
 
-/// Depth and stencil come together or not at all, so that drawables can move between contexts.
+/// Contexts have either both depth and stencil or neither, so that drawables can move between contexts.
 void* OsmesaContexts::make_context(const spu::RecordedContext& wanted, int version) const {
   const bool depth_stencil = has_depth_stencil(wanted);
   const auto share = contexts_.find(wanted.shares_with);
@@ -91,7 +91,7 @@ void OsmesaContexts::make_current(std::uint64_t number, std::uint64_t drawable, 
   current_ = number;
   Context& context = contexts_.at(number);
   Drawable& place = drawable_of(context, drawable);
-  std::vector<std::uint8_t> old_memory;  // which the current context may write to until another one is current
+  std::vector<std::uint8_t> old_memory;  // the current context may write to it until another one is current
   if (place.extent != extent) {
     old_memory = std::move(place.memory);
     place = {.extent = extent,
@@ -124,10 +124,10 @@ void OsmesaContexts::destroy(std::uint64_t number) {
   if (found == contexts_.end()) return;
   Context& context = found->second;
   Drawable& drawable = drawable_of(context, context.drawable);
-  // Windows outlive contexts.
+  // Windows outlive contexts, so their contents are saved.
   if (drawable.holder == number && context.drawable != 0) {
     take_out(drawable);
-    // Another context may be in use meanwhile.
+    // Another context may be current.
     const auto other = contexts_.find(current_);
     if (other == contexts_.end() || other == found) {
       release_current();

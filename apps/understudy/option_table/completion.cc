@@ -20,14 +20,14 @@ std::vector<std::string> names_of(Rows subcommands) {
   return names;
 }
 
-/// For a shell's single quotes.
+/// Quotes text for a shell, in single quotes.
 std::string in_quotes(std::string_view text) {
   std::string out;
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : c == '\n' ? " " : std::string(1, c);
   return "'" + out + "'";
 }
 
-/// Up to the first colon, semicolon or bracket, which is what a list of choices has room for.
+/// Returns the text up to the first colon, semicolon or bracket, shortened to fit into a list of choices.
 std::string beginning(const std::string& description) {
   constexpr std::size_t most = 70;
   std::string text = description.substr(0, description.find_first_of(":;[]\n"));
@@ -37,7 +37,7 @@ std::string beginning(const std::string& description) {
   return text + " …";
 }
 
-/// In a list of zsh's _arguments a colon ends a part.
+/// Escapes colons, which end a part in zsh's _arguments.
 std::string with_escaped_colons(const std::vector<std::string>& values) {
   std::string out;
   for (const char c : fmt::format("{}", fmt::join(values, " ")))
@@ -52,7 +52,7 @@ std::string bash(std::string_view program, Rows subcommands) {
     for (const OptionRow& option : row.options) {
       names.insert(names.end(), option.names.begin(), option.names.end());
       if (option.names.empty() || option.value.empty()) continue;
-      // Where the words of a value are not known it may be a file.
+      // If the words of a value are unknown, it may be a file.
       fmt::format_to(std::back_inserter(values), "    '{} {}') words='{}'; files={} ;;\n", row.name,
                      fmt::join(option.names, fmt::format("'|'{} ", row.name)), fmt::join(option.values, " "),
                      option.values.empty() ? "true" : "false");

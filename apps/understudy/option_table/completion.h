@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Completion of the command line in a shell.
+// Command line completion for shells.
 #pragma once
 
 #include <span>
@@ -10,7 +10,8 @@
 
 namespace understudy::launcher {
 
-/// What `shell` (bash, zsh or fish) reads to complete `program`. Throws std::invalid_argument for another.
+/// Returns the completion script of `program` for `shell` (bash, zsh or fish). Throws
+/// std::invalid_argument for any other shell.
 std::string completion_text(std::string_view shell, std::string_view program,
                             std::span<const SubcommandRow> subcommands);
 

@@ -13,7 +13,7 @@ namespace understudy::launcher {
 
 namespace {
 
-/// As man(7) shows it: dashes stay dashes, and a line that begins with a dot or a quote is text.
+/// Escapes text for man(7): dashes stay dashes, and a line that begins with a dot or a quote is text.
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {

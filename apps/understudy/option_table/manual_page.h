@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The manual page of a program with subcommands, in the language of man(7).
+// Generates the manual page of a program with subcommands, in the format of man(7).
 #pragma once
 
 #include <span>
@@ -16,7 +16,7 @@ struct ManualPage {
   std::string version;
   std::string summary;  ///< a line without a full stop
   std::span<const SubcommandRow> subcommands;
-  /// Programs that belong to it, each with what it is.
+  /// Related programs, each with its description.
   std::vector<std::pair<std::string, std::string>> others;
 };
 

@@ -9,7 +9,7 @@ namespace understudy::launcher {
 
 namespace {
 
-/// The words of "on|off"; none of what is no such list, as "BYTES|auto".
+/// Returns the words of a list such as "on|off"; none for any other value, such as "BYTES|auto".
 std::vector<std::string> words_of(const std::string& value) {
   std::vector<std::string> words;
   std::istringstream list(value);

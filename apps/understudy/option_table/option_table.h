@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subcommands of a program and their options, as its command line declares them: what manual pages and
-// completions are made of. Hidden ones are left out.
+// The subcommands of a program and their options, as declared to CLI11. Manual pages and completions are
+// generated from this table. Hidden entries are omitted.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,12 +10,12 @@
 namespace understudy::launcher {
 
 struct OptionRow {
-  std::vector<std::string> names;   ///< with their dashes, short ones first; empty: a positional argument
-  std::string value;                ///< what stands for its value, as FILE; empty: it takes none
-  std::vector<std::string> values;  ///< the words that it takes; empty: others
-  std::string heading;              ///< of its group
+  std::vector<std::string> names;   ///< with dashes, short names first; empty: a positional argument
+  std::string value;                ///< placeholder of its value, such as FILE; empty: takes no value
+  std::vector<std::string> values;  ///< the words that it accepts; empty: other values
+  std::string heading;              ///< heading of its group
   std::string description;
-  std::string place;  ///< of a positional argument: its name
+  std::string place;  ///< name of a positional argument
 };
 
 struct SubcommandRow {
@@ -24,9 +24,9 @@ struct SubcommandRow {
   std::vector<OptionRow> options;
 };
 
-/// Of one subcommand.
+/// Returns the options of one subcommand.
 std::vector<OptionRow> option_rows(const CLI::App& subcommand);
-/// Of a command line whose options stand in their groups already.
+/// Returns the table of a command line. Options must already be grouped.
 std::vector<SubcommandRow> option_table(const CLI::App& app);
 
 }  // namespace understudy::launcher

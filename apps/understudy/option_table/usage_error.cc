@@ -16,8 +16,8 @@ namespace {
 
 using WordSpan = std::span<const std::string>;
 
-/// How many letters must be inserted, left out, replaced or exchanged with the next (Damerau 1964, without
-/// moves over longer distances).
+/// Returns how many letters must be inserted, deleted, replaced or exchanged with the next (Damerau 1964; only
+/// adjacent letters are exchanged).
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> before, last(b.size() + 1), next(b.size() + 1);
   std::iota(last.begin(), last.end(), std::size_t{0});
@@ -41,7 +41,7 @@ std::string with_nearest(std::string sentence, const std::string& word, WordSpan
   return sentence;
 }
 
-/// What stands before the '=' of "--option=value".
+/// Returns the part of "--option=value" before the '='.
 std::string option_name(const std::string& word) {
   return word.substr(0, word.find('='));
 }
@@ -66,8 +66,8 @@ const CLI::App* subcommand_of(const CLI::App& app, const std::string& word) {
   return all.empty() ? nullptr : all.front();
 }
 
-/// The first word that was left over, in the order of the line: an option that `subcommand` does not have, or a
-/// word that belongs to no option.
+/// Returns the first unrecognised word, in the order of the line: an option that `subcommand` does not have, or
+/// a word that belongs to no option.
 std::optional<std::string> left_over(const CLI::App& subcommand, WordSpan words) {
   const std::vector<std::string> all = subcommand.remaining();
   const auto found = std::ranges::find_if(
@@ -75,7 +75,7 @@ std::optional<std::string> left_over(const CLI::App& subcommand, WordSpan words)
   return found == words.end() ? std::nullopt : std::optional(*found);
 }
 
-/// The value that `option` was given, and its words, where it takes only those.
+/// An invalid value of `option`, and the words that it accepts.
 struct WrongValue {
   std::string option;
   std::string value;
@@ -86,7 +86,7 @@ std::optional<WrongValue> wrong_value(const CLI::App& subcommand, const std::str
   for (const OptionRow& row : option_rows(subcommand)) {
     if (row.values.empty()) continue;
     const std::vector<std::string> names = row.names.empty() ? std::vector{row.place} : row.names;
-    // The library begins its sentence with all names of the option, or with one of them.
+    // CLI11 begins its message with all names of the option, or with one of them.
     const bool concerned = std::ranges::any_of(names, [&](const std::string& name) {
       return message.starts_with(name + ":") || message.starts_with(name + ",");
     });
@@ -125,7 +125,7 @@ std::string explanation(const CLI::App& app, WordSpan words, const CLI::ParseErr
     if (extra->starts_with('-'))
       return with_nearest(fmt::format("{} has no option {}", name, option_name(*extra)), option_name(*extra),
                           option_names(*subcommand));
-    // What a viewer's command begins with is no option of ours.
+    // The beginning of a viewer's command is not one of our options.
     if (name == "run") return "put -- before the viewer's command: understudy run [options] -- viewer args…";
     return fmt::format("{} does not take '{}'", name, *extra);
   }
@@ -141,7 +141,7 @@ std::string explanation(const CLI::App& app, WordSpan words, const CLI::ParseErr
 
 std::string nearest_word(const std::string& word, WordSpan known) {
   std::string nearest;
-  // A third of the letters may be wrong.
+  // Up to a third of the letters may be wrong.
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : known) {
     const bool begins = word.size() > 2 && candidate.starts_with(word);

@@ -7,7 +7,7 @@
 namespace understudy::launcher {
 
 std::string version_number();
-/// Of the checkout; "no commit" for a source archive.
+/// The commit of the checkout; "no commit" for a source archive.
 std::string commit();
 std::string compiler();
 

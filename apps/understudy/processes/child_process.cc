@@ -31,10 +31,10 @@ std::vector<char*> pointers_to(std::vector<std::string>& strings) {
   return pointers;
 }
 
-/// The descriptors behind the outputs are closed by exec.
+/// Makes exec close all descriptors after the standard ones.
 void close_others_at_exec() {
   if (close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC) == 0) return;
-  // Before Linux 5.11.
+  // close_range() with this flag requires Linux 5.11.
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
   for (int descriptor = STDERR_FILENO + 1; rlim_t(descriptor) < limit.rlim_cur; ++descriptor)
@@ -46,7 +46,8 @@ bool take_input_from_nowhere() {
   return input >= 0 && dup2(input, STDIN_FILENO) >= 0;
 }
 
-/// Between fork and exec: only what is safe there. Returns when something failed, with errno set.
+/// Runs between fork and exec, so it is restricted to async-signal-safe calls. Returns only if
+/// something failed, with errno set.
 void become(const Command& command, char* const* arguments, char* const* environment, pid_t parent) {
   sigset_t none;
   sigemptyset(&none);
@@ -87,7 +88,7 @@ ChildProcess::ChildProcess(const Command& command) : own_group_(command.own_grou
   const std::vector<char*> arguments = pointers_to(argument_strings);
   const std::vector<char*> environment = pointers_to(environment_strings);
 
-  // The pipe closes by itself when exec succeeds; otherwise errno comes through it.
+  // The pipe closes by itself if exec succeeds; otherwise it transmits errno.
   std::array<int, 2> failure{};
   if (pipe2(failure.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
   const pid_t parent = getpid();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A process for each client of one that listens: neither a driver's faults nor a closed connection concern
-// another client.
+// Starts a process for each client of a listening process, so that neither a crashing driver nor a closed
+// connection affects other clients.
 #pragma once
 
 #include <sys/types.h>
@@ -21,11 +21,11 @@ class ClientProcesses {
   ClientProcesses() = default;
   ClientProcesses(const ClientProcesses&) = delete;
   ClientProcesses& operator=(const ClientProcesses&) = delete;
-  /// Waits a moment for those that have just ended; the others go with this process.
+  /// Waits briefly for processes that are just ending; the others end with this process.
   ~ClientProcesses();
 
-  /// Forks; the child does `work`, which gives its exit status, and ends. It gets SIGTERM when this process
-  /// ends. False where no process can be made.
+  /// Forks; the child runs `work`, whose result is its exit status, and ends. It gets SIGTERM when this process
+  /// ends. Returns false if no process can be created.
   bool start(const std::function<int()>& work);
   /// Call when a child may have ended.
   void reap();
@@ -35,12 +35,12 @@ class ClientProcesses {
   std::set<pid_t> processes_;
 };
 
-/// Whether a signal asks for the end; processes that have ended are reaped.
+/// Returns whether a signal requests the end; reaps processes that have ended.
 bool asked_to_end(SignalInbox& inbox, ClientProcesses& clients);
 
-/// Listens at a Unix socket until a signal asks for the end, and has a process do `work` for each client, at
-/// most limits::max_clients at once. `who` says so where there are more. Throws std::runtime_error where nobody
-/// can listen.
+/// Listens at a Unix socket until a signal requests the end, and runs `work` in a process for each client, at
+/// most limits::max_clients at once. `who` names this process in messages about rejected clients. Throws
+/// std::runtime_error if it cannot listen.
 void listen_for_clients(const std::string& socket, const std::string& who,
                         const std::function<int(compositor::FileDescriptor)>& work);
 

@@ -11,7 +11,7 @@ namespace understudy::launcher {
 
 namespace {
 
-/// Under whatever name: a link to it is the folder, too.
+/// Returns whether `folder` is the entry folder, also through a link.
 bool is_entry_folder(const std::filesystem::path& folder, const Installation& installation) {
   std::error_code unreadable;
   return folder.lexically_normal() == installation.entry_folder() ||
@@ -62,7 +62,7 @@ Environment node_environment(Environment environment, const Installation& instal
     found->second = kept;
     if (kept.empty()) environment.erase(found);
   }
-  // mpirun refuses to work for root unless told twice; in containers there is often nobody else.
+  // mpirun refuses to run as root unless both variables are set; containers often have no other user.
   if (geteuid() == 0) {
     environment["OMPI_ALLOW_RUN_AS_ROOT"] = "1";
     environment["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the parts of Understudy lie, as seen from this program: in the folder that built it, or installed.
+// Locations of the parts of Understudy, relative to this program: in the build folder, or installed.
 #pragma once
 
 #include <filesystem>
@@ -19,11 +19,11 @@ struct Installation {
   std::filesystem::path entry_folder() const { return libraries / "entry"; }
 };
 
-/// Found from /proc/self/exe, so that both kinds of folders can be moved. Throws std::runtime_error without
-/// /proc.
+/// Determined from /proc/self/exe, so that both kinds of folders can be moved. Throws
+/// std::runtime_error without /proc.
 Installation this_installation();
 
-/// The program `name` on PATH; empty when there is none.
+/// Returns the program `name` on PATH; empty if there is none.
 std::optional<std::filesystem::path> program_on_path(const std::string& name);
 
 }  // namespace understudy::launcher

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a program said last.
+// The last line that a program wrote.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,8 @@
 
 namespace understudy::launcher {
 
-/// The last line of a file that is not empty, without control characters: programs say last what went wrong.
+/// Returns the last non-empty line of a file, without control characters: programs
+/// usually report an error last.
 std::string last_line(const std::filesystem::path& file);
 
 }  // namespace understudy::launcher

@@ -27,7 +27,7 @@ Json own_command() {
   return words;
 }
 
-/// As the kernel names it; empty where it does not.
+/// Returns the kernel's name of the processor; empty if there is none.
 std::string processor_name() {
   constexpr std::string_view key = "model name";
   std::ifstream file("/proc/cpuinfo");

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where figures come from, so that a report can be understood later and elsewhere.
+// The origin of figures, so that a report can be understood later and on other machines.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 
 namespace understudy::launcher {
 
-/// {"version", "commit", "compiler", "instruction_set", "command": [word…], "machine": {"name", "processor",
-/// "processors", "memory_bytes"}, "time"}. Of this process, here and now; the time is UTC, ISO 8601.
+/// Returns {"version", "commit", "compiler", "instruction_set", "command": [word…], "machine": {"name",
+/// "processor", "processors", "memory_bytes"}, "time"} of this process, now; the time is UTC in ISO 8601.
 nlohmann::ordered_json origin();
 
 }  // namespace understudy::launcher

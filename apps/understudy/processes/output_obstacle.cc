@@ -13,11 +13,11 @@ namespace understudy::launcher {
 
 std::string obstacle_to_writing(const std::string& path) {
   namespace fs = std::filesystem;
-  // Nothing is opened: a pipe's reader would take that for its end.
+  // The file is not opened: the reader of a pipe would see its end.
   std::error_code unknown;
   const bool there = fs::exists(path, unknown);
   if (there && fs::is_directory(path, unknown)) return fmt::format("{} is a folder", path);
-  // Of a link to a file that is not there yet, where that will be.
+  // For a link to a file that does not exist yet, check the folder of that file.
   const fs::path target = fs::weakly_canonical(path, unknown);
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   const bool can = there ? ::access(path.c_str(), W_OK) == 0 : ::access(folder.c_str(), W_OK | X_OK) == 0;

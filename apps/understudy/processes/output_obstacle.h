@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether what a command writes in the end, or frame by frame, can be written: found out before it begins.
+// Checks, before a command begins, whether its outputs can be written.
 #pragma once
 
 #include <string>
 
 namespace understudy::launcher {
 
-/// Why the file `path` cannot be made or overwritten; empty: it can. Nothing is opened or changed.
+/// Returns why the file `path` cannot be created or overwritten; empty: it can. Opens and changes nothing.
 std::string obstacle_to_writing(const std::string& path);
 
-/// Makes `folder` where it is not there. Why no file can be made in it; empty: it can.
+/// Creates `folder` if it does not exist. Returns why no file can be created in it; empty: one can.
 std::string obstacle_to_writing_into(const std::string& folder);
 
 }  // namespace understudy::launcher

@@ -9,7 +9,8 @@
 namespace understudy::launcher {
 
 SignalInbox::SignalInbox(std::initializer_list<int> numbers) {
-  // A parent may have left SIGCHLD ignored, and then children vanish without a word.
+  // A parent may have left SIGCHLD ignored; children would then be reaped automatically,
+  // and no signal would arrive.
   signal(SIGCHLD, SIG_DFL);
   sigset_t set;
   sigemptyset(&set);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signals as messages: while an inbox lives they wait in a file descriptor, to be polled beside sockets, and
-// none interrupts the program. Children do not inherit this (see ChildProcess).
+// Receives signals as messages: while an inbox exists, they wait in a file descriptor, which is polled beside
+// sockets, and do not interrupt the program. Children do not inherit this (see ChildProcess).
 #pragma once
 
 #include <signal.h>
@@ -13,7 +13,7 @@ namespace understudy::launcher {
 
 struct ReceivedSignal {
   int number = 0;
-  bool from_terminal = false;  ///< Ctrl-C and the like: the whole foreground group has got it already
+  bool from_terminal = false;  ///< for example by Ctrl-C: the whole foreground group has received it already
 };
 
 class SignalInbox {
@@ -25,7 +25,7 @@ class SignalInbox {
   ~SignalInbox();
 
   int descriptor() const { return descriptor_; }
-  /// The next signal that waits; empty when none does.
+  /// The next pending signal; empty if there is none.
   std::optional<ReceivedSignal> next();
 
  private:

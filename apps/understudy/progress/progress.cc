@@ -22,7 +22,7 @@ void Progress::show(double done, std::string_view text) {
   }
   if (text == shown_) return;
   shown_ = text;
-  // The rest of a longer line before it is erased.
+  // Erases the rest of a longer previous line.
   std::fputs(fmt::format("\runderstudy: {}\033[K", text).c_str(), stderr);
   std::fflush(stderr);
 }

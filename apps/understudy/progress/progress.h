@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far long work is, on standard error: on a terminal a line that is written over itself, and is gone when
-// the work is done; elsewhere nothing, or lines that stay.
+// Prints the progress of long work to standard error: on a terminal, as one line that is overwritten, and
+// erased at the end; elsewhere nothing, or as permanent lines.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@ namespace understudy::launcher {
 
 enum class ProgressStyle : std::uint8_t { silent, line, lines };
 
-/// A line on terminals, and silence elsewhere.
+/// One line on terminals, silent elsewhere.
 ProgressStyle usual_progress();
 
 class Progress {
@@ -24,8 +24,8 @@ class Progress {
   ~Progress();
 
   ProgressStyle style() const { return style_; }
-  /// `done`: the share of the work, from 0 to 1; `text` says it too. Any thread may call it. Of lines that
-  /// stay, one is written for every tenth of the work, and one every two seconds.
+  /// `done` is the fraction of the work, from 0 to 1; `text` describes it. May be called from any thread.
+  /// Permanent lines are written for every tenth of the work, and after two seconds without one.
   void show(double done, std::string_view text);
 
  private:
@@ -34,7 +34,7 @@ class Progress {
   const ProgressStyle style_;
   std::mutex mutex_;
   std::string shown_;      ///< the line on the terminal
-  double next_share_ = 0;  ///< at which a line that stays is due
+  double next_share_ = 0;  ///< fraction of the work at which the next permanent line is due
   std::chrono::steady_clock::time_point last_{};
 };
 

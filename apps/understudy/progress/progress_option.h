@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `--progress` and `--quiet` of the subcommands that may take long.
+// `--progress` and `--quiet` of subcommands that may take long.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,7 +15,7 @@ struct ProgressOptions {
   ProgressStyle style() const;
 };
 
-/// `extra`: what else the lines of --progress say.
+/// `extra` is appended to the help text of --progress: further content of its lines.
 void add_progress_options(CLI::App& subcommand, ProgressOptions& options, const std::string& extra = {});
 
 }  // namespace understudy::launcher

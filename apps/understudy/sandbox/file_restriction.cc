@@ -21,7 +21,7 @@ namespace {
 
 using compositor::FileDescriptor;
 
-// Headers are those of the distribution, kernels are often newer.
+// Defined here because kernels are often newer than the distribution's headers.
 constexpr std::uint64_t refer_right = 1ULL << 13;     // version 2
 constexpr std::uint64_t truncate_right = 1ULL << 14;  // version 3
 constexpr std::uint64_t tcp_rights = 3;               // version 4: bind and connect
@@ -29,7 +29,7 @@ constexpr std::uint64_t other_processes = 3;          // version 6: abstract soc
 
 constexpr std::uint64_t listing = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
 constexpr std::uint64_t reading = listing | LANDLOCK_ACCESS_FS_EXECUTE;
-/// The kernel takes no others for what is no folder.
+/// The kernel accepts only these rights for anything but folders.
 constexpr std::uint64_t of_single_files =
     LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_WRITE_FILE | truncate_right;
 
@@ -39,7 +39,7 @@ struct RulesetAttributes {
   std::uint64_t scope = 0;
 };
 
-/// How much of the structure a kernel of this version knows.
+/// Returns how many bytes of the structure a kernel of this version supports.
 std::size_t bytes_known(int version) {
   if (version >= 6) return sizeof(RulesetAttributes);
   return version >= 4 ? offsetof(RulesetAttributes, scope) : offsetof(RulesetAttributes, network);
@@ -63,7 +63,7 @@ class Ruleset {
     if (!rules_) trouble_ = fmt::format("Landlock cannot create a ruleset: {}", std::strerror(errno));
   }
 
-  /// What is not there needs no rule.
+  /// Missing files need no rule.
   void allow(const std::vector<std::filesystem::path>& files, std::uint64_t rights) {
     for (const std::filesystem::path& file : files) allow(file, rights);
   }

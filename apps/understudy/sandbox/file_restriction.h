@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that this process may use, by Landlock (Linux 5.13 and later): each call takes rights away and none
-// gives any back. Holds for the calling thread and those that it starts, and not for others that are there.
+// Restricts the files that this process may use, by Landlock (Linux 5.13 and later): each call
+// removes rights, and none restores them. Applies to the calling thread and the threads that it
+// starts, not to other existing threads.
 #pragma once
 
 #include <filesystem>
@@ -9,19 +10,19 @@
 
 namespace understudy::launcher {
 
-/// What this kernel has; 0: nothing, or it is switched off.
+/// Returns the version of Landlock in this kernel; 0: none, or disabled.
 int landlock_version();
 
-/// Folders, with all below them, and files. One that is not there is left out.
+/// Folders with everything below them, and files. Missing ones are ignored.
 struct UsableFiles {
   std::vector<std::filesystem::path> read;     ///< read, listed and executed
-  std::vector<std::filesystem::path> written;  ///< that, and written, made, renamed and removed
+  std::vector<std::filesystem::path> written;  ///< the same, and written, created, renamed and removed
   std::vector<std::filesystem::path> devices;  ///< read, listed and written
 };
 
-/// No other file is used from now on. From version 4 on no TCP port is opened or connected to; from version 6
-/// on neither are abstract sockets of other processes, nor are they sent signals. Returns what is in the way,
-/// or nothing.
+/// Forbids the use of all other files from now on. Since version 4 also forbids binding and connecting TCP
+/// ports; since version 6, connecting to abstract sockets of other processes and sending them signals. Returns
+/// what prevents this, or an empty string.
 std::string restrict_files(const UsableFiles& files);
 
 }  // namespace understudy::launcher

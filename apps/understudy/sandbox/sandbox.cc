@@ -16,14 +16,14 @@
 namespace understudy::launcher {
 namespace {
 
-/// Connections, image buffers, and what a driver holds.
+/// For connections, image buffers, and the driver's descriptors.
 constexpr rlim_t most_descriptors = 256;
 
-/// What drivers and their libraries open. Homes and data are elsewhere.
+/// Folders that drivers and their libraries open. Home folders and data are elsewhere.
 constexpr auto of_systems = std::to_array<const char*>({"/etc", "/gnu/store", "/lib", "/lib64", "/nix/store",
                                                         "/opt", "/proc", "/run/opengl-driver", "/sys", "/usr"});
 
-/// Not all of /dev: a terminal is not for drivers.
+/// Not all of /dev: drivers need no terminal.
 constexpr auto devices_of_drivers =
     std::to_array<const char*>({"/dev/dri", "/dev/dxg", "/dev/kfd", "/dev/null", "/dev/random", "/dev/udmabuf",
                                 "/dev/urandom", "/dev/zero"});
@@ -44,8 +44,8 @@ void bound(__rlimit_resource resource, rlim_t most) {
   ::setrlimit(resource, &limit);
 }
 
-/// Memory behind descriptors counts for no limit of a process. So where memory ends, it is this process that
-/// the kernel ends.
+/// Makes the kernel end this process first when memory runs out, because no limit of a process counts
+/// memory behind descriptors.
 void be_ended_first() {
   std::ofstream("/proc/self/oom_score_adj") << 1000;
 }
@@ -55,7 +55,7 @@ void bound_resources() {
   bound(RLIMIT_CORE, 0);
   bound(RLIMIT_NOFILE, most_descriptors);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  // Sanitizers reserve far more than there is.
+  // Sanitizers reserve far more address space than there is memory.
   bound(RLIMIT_DATA, compositor::usable_memory());
 #endif
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sandbox of a process that executes OpenGL calls for others: a stream that finds a fault in a driver must
-// not get at files, programs or networks by it.
+// The sandbox of a process that executes OpenGL calls for others: a stream that exploits a fault of a driver
+// must not gain access to files, programs or networks.
 //
-// It closes in two steps. A driver needs files and devices to be opened, so at first, while there is one thread
-// and no call was read, resources are bounded, and files are taken away that no driver needs. Once the driver
-// has made a context, seccomp takes away what a driver does not need to draw, from its threads too. Landlock
-// binds no thread that is there already: what it is to bind has to stand in the first step.
+// It closes in two steps. A driver has to open files and devices. So in the first step, while there is only one
+// thread and no call has been read, resources are limited and files that no driver needs are forbidden. After
+// the driver has created a context, seccomp removes what it does not need to draw, from its threads, too.
+// Landlock does not affect existing threads, so its rules must be set in the first step.
 #pragma once
 
 #include <filesystem>
@@ -16,33 +16,33 @@
 
 namespace understudy::launcher {
 
-/// What a sandboxed process uses beyond devices, and libraries and settings where systems have them.
+/// What a sandboxed process uses in addition to devices, and to the standard folders of libraries and settings.
 struct SandboxFolders {
   std::vector<std::filesystem::path> written;
   std::vector<std::filesystem::path> libraries;  ///< folders and files
 };
 
-/// What holds of a sandbox.
+/// The state of a sandbox.
 struct SandboxState {
-  std::string obstacle;  ///< why system calls are not restricted; empty: they are
+  std::string obstacle;  ///< why system calls are not restricted; empty: they are restricted
   int landlock = 0;      ///< version in effect; 0: none
-  /// Why Landlock is not in effect; empty: it is. No file can be opened then, neither in the folders to be
-  /// written nor by the driver of a graphics card.
+  /// Why Landlock is not in effect; empty: it is. Without Landlock, no file can be opened, neither in the
+  /// folders to be written nor by the driver of a graphics card.
   std::string no_landlock;
 };
 
 class Sandbox {
  public:
-  /// The first step: bounds of resources, no new privileges, and files only in `folders` and where drivers have
-  /// theirs. To be called before the process has a second thread.
+  /// The first step: resource limits, no new privileges, and access to files only in `folders` and where
+  /// drivers have theirs. To be called before the process has a second thread.
   explicit Sandbox(const SandboxFolders& folders);
 
-  /// The second step, for good. Files stay open. Where Landlock bounds it to what the first step left, files
-  /// can be opened to be written, if there are folders for that, and by a graphics card's driver also to be
-  /// read.
+  /// The second step, which is irreversible. Open files stay open. If Landlock is in effect, files allowed by
+  /// the first step can still be opened: for writing, if there are folders to be written, and by the driver of
+  /// a graphics card also for reading.
   SandboxState close(Renderer renderer) const;
 
-  /// There are folders to be written.
+  /// Whether there are folders to be written.
   bool writes() const { return writes_; }
 
  private:
@@ -50,7 +50,7 @@ class Sandbox {
   std::string no_landlock_;
 };
 
-/// By what the driver says of itself (GL_RENDERER).
+/// Detects the renderer from the driver's GL_RENDERER.
 Renderer renderer_named(const std::string& name);
 
 }  // namespace understudy::launcher

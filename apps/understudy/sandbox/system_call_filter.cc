@@ -25,9 +25,9 @@
 namespace understudy::launcher {
 namespace {
 
-/// Whatever their arguments are. Names, since headers of older kernels lack numbers of newer calls.
+/// Allowed with any arguments. By name, because headers of older kernels lack numbers of newer calls.
 constexpr auto always = std::to_array<const char*>({
-    // Memory. Executable memory as well: drivers on the CPU compile shaders.
+    // Memory, including executable memory: drivers on the CPU compile shaders.
     "brk",
     "madvise",
     "membarrier",
@@ -37,7 +37,7 @@ constexpr auto always = std::to_array<const char*>({
     "mprotect",
     "mremap",
     "munmap",
-    // Descriptors that are there, and files without a name.
+    // Existing descriptors, and files without a name.
     "close",
     "close_range",
     "dup",
@@ -73,7 +73,7 @@ constexpr auto always = std::to_array<const char*>({
     "select",
     "write",
     "writev",
-    // Sockets that are there.
+    // Existing sockets.
     "getpeername",
     "getsockname",
     "getsockopt",
@@ -85,7 +85,7 @@ constexpr auto always = std::to_array<const char*>({
     "sendto",
     "setsockopt",
     "shutdown",
-    // Threads, signals and the end.
+    // Threads, signals and exit.
     "exit",
     "exit_group",
     "futex",
@@ -112,7 +112,7 @@ constexpr auto always = std::to_array<const char*>({
     "set_robust_list",
     "set_tid_address",
     "sigaltstack",
-    // Time and facts.
+    // Time and system information.
     "clock_getres",
     "clock_gettime",
     "clock_gettime64",
@@ -134,20 +134,21 @@ constexpr auto always = std::to_array<const char*>({
     "uname",
 });
 
-/// Of files by name, but for opening those that are there.
+/// Calls on files by name, except those that open existing files.
 constexpr auto of_files = std::to_array<const char*>(
     {"access", "creat", "faccessat", "faccessat2", "fchmod", "fstatat64", "getdents64", "lstat", "newfstatat",
      "readlink", "readlinkat", "rename", "renameat", "renameat2", "stat", "statx", "unlink", "unlinkat"});
 
-/// Of drivers of graphics cards.
+/// Needed by drivers of graphics cards.
 constexpr auto of_cards =
     std::to_array<const char*>({"kcmp", "mlock", "munlock", "timerfd_create", "timerfd_settime"});
 
-/// The second byte of their ioctls: DRM, NVIDIA's modules for cards and for their outputs, buffers that devices
-/// share, fences, and AMD's module for computing. A terminal's is 'T', by which one could type into it.
+/// The second byte of these drivers' ioctls: DRM, NVIDIA's modules for cards and for their outputs,
+/// shared device buffers, fences, and AMD's compute module. A terminal's is 'T', which would allow
+/// typing into the terminal.
 constexpr auto types_of_card_ioctls = std::to_array<char>({'d', 'F', 'm', 'b', '>', 'K'});
 
-/// Fail with EACCES, as files do that one may not open: libraries go on without them.
+/// These fail with EACCES, like files without permission, so that libraries continue without them.
 constexpr auto opening_calls =
     std::to_array<const char*>({"creat", "open", "openat", "openat2", "open_by_handle_at"});
 
@@ -163,7 +164,7 @@ class Filter {
 
   void add(std::uint32_t action, const char* name, std::initializer_list<scmp_arg_cmp> arguments) {
     const int call = seccomp_syscall_resolve_name(name);
-    // Below zero: this processor has no such call, or libseccomp is older than it.
+    // Negative: this architecture has no such call, or libseccomp does not support it yet.
     if (!context_ || call < 0) return;
     const int result =
         seccomp_rule_add_array(context_.get(), action, call, unsigned(arguments.size()), arguments.begin());
@@ -177,7 +178,7 @@ class Filter {
 
   std::string load() {
     if (!trouble_.empty()) return trouble_;
-    // All threads that there are, such as a driver's. A tree of comparisons takes less time than a list.
+    // Applies to all existing threads, such as a driver's. A binary tree of comparisons is faster than a list.
     int result = seccomp_attr_set(context_.get(), SCMP_FLTATR_CTL_TSYNC, 1);
     if (result != 0)
       return fmt::format("libseccomp cannot restrict existing threads: {}", std::strerror(-result));
@@ -196,14 +197,14 @@ scmp_arg_cmp is(unsigned argument, std::uint64_t value) {
   return {argument, SCMP_CMP_EQ, value, 0};
 }
 
-/// Of the bits of `mask` these are set.
+/// Matches if, of the bits of `mask`, exactly `bits` are set.
 scmp_arg_cmp is_in(unsigned argument, std::uint64_t mask, std::uint64_t bits) {
   return {argument, SCMP_CMP_MASKED_EQ, mask, bits};
 }
 
-/// What depends on arguments, since part of what the call does would be too much.
+/// Allows calls only with certain arguments, because others would permit too much.
 void allow_by_arguments(Filter& filter) {
-  // Threads, and no processes. clone3 hides its flags; glibc uses clone where it is missing.
+  // Threads, but no processes. clone3 hides its flags from the filter; glibc uses clone if clone3 is missing.
   filter.allow("clone", {is_in(0, CLONE_THREAD, CLONE_THREAD)});
   filter.add(SCMP_ACT_ERRNO(ENOSYS), "clone3", {});
   for (const int command :
@@ -213,21 +214,21 @@ void allow_by_arguments(Filter& filter) {
   }
   for (const int what : {PR_SET_NAME, PR_GET_NAME, PR_SET_VMA})
     filter.allow("prctl", {is(0, std::uint64_t(what))});
-  // Signals to this process alone, as abort() sends them.
+  // Signals to this process only, as sent by abort().
   const auto own = std::uint64_t(::getpid());
   filter.allow("kill", {is(0, own)});
   filter.allow("tgkill", {is(0, own)});
-  // Of the calling thread: other numbers may be those of other processes.
+  // Only for the calling thread: other ids may belong to other processes.
   filter.allow("get_robust_list", {is(0, 0)});
   filter.allow("sched_setaffinity", {is(0, 0)});
-  // Limits are read, not set.
+  // Limits may be read, but not set.
   filter.allow("prlimit64", {is(0, 0), is(2, 0)});
   filter.allow("prlimit64", {is(0, own), is(2, 0)});
 }
 
 void allow_for_a_card(Filter& filter) {
   filter.add(SCMP_ACT_ALLOW, of_cards);
-  // The kernel takes the lower half of the number, which is compared here.
+  // The kernel uses the lower half of the number, so that half is compared.
   for (const char type : types_of_card_ioctls)
     filter.allow("ioctl", {is_in(1, 0xff00, std::uint64_t(type) << 8)});
   filter.allow("sched_setscheduler", {is(0, 0)});
@@ -237,7 +238,7 @@ void allow_for_a_card(Filter& filter) {
 void allow_opening(Filter& filter, Opening opening) {
   if (opening == Opening::nothing) {
     filter.add(SCMP_ACT_ERRNO(EACCES), opening_calls);
-    // glibc's fstat() of a descriptor.
+    // glibc uses it for fstat() of a descriptor.
     filter.allow("newfstatat", {is_in(3, AT_EMPTY_PATH, AT_EMPTY_PATH)});
     return;
   }

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which system calls a process that executes OpenGL calls for others may make once its driver is open. All
-// others fail with EPERM (open and its kin with EACCES); only a call by the numbers of another architecture
-// ends the process.
+// Restricts the system calls of a process that executes OpenGL calls for others, after its driver is open. All
+// other calls fail with EPERM (open and similar calls with EACCES); only a call by the number of another
+// architecture ends the process.
 #pragma once
 
 #include <string>
 
 namespace understudy::launcher {
 
-/// What draws: a driver on the CPU compiles shaders into memory and needs no file afterwards; drivers of
-/// graphics cards ask their kernel module for everything, and open devices later.
+/// What draws. A driver on the CPU compiles shaders into memory and needs no file afterwards; drivers of
+/// graphics cards send requests to their kernel module, and open devices later.
 enum class Renderer { cpu, graphics_card };
 
-/// More than nothing is for where something else says which files (see file_restriction.h).
+/// Values other than `nothing` require that another mechanism restricts the files (file_restriction.h).
 enum class Opening {
   nothing,
-  to_write,  ///< files that are opened cannot be read alone
+  to_write,  ///< files can be opened for writing, but not read-only
   all
 };
 
@@ -24,8 +24,8 @@ struct SystemCalls {
   Opening opening = Opening::nothing;
 };
 
-/// Holds for all threads of this process and those that they start, and cannot be taken back. Returns what is
-/// in the way, or nothing.
+/// Applies to all threads of this process and those that they start, and is irreversible. Returns what prevents
+/// this, or an empty string.
 std::string restrict_system_calls(const SystemCalls& calls);
 
 }  // namespace understudy::launcher

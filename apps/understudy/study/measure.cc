@@ -15,15 +15,16 @@ namespace understudy::launcher::study {
 namespace {
 
 constexpr double finest_termination = 5e-6;
-/// Of steps one voxel long; that of others falls with the square of their length, as their error does.
+/// Tolerance for steps of one voxel; for other steps it scales with the square of their
+/// length, as their error does.
 constexpr double adaptive_tolerance = 4e-3;
 
-/// Of values in rising order.
+/// Returns a quantile of values in ascending order.
 double quantile(std::span<const double> sorted, double share) {
   return sorted[std::min(std::size_t(share * double(sorted.size())), sorted.size() - 1)];
 }
 
-/// Of the RMS of rays, of each of which the sum of four squares is given.
+/// Returns the 95 % interval of the RMS over rays, given each ray's sum of four squares.
 std::array<double, 2> bootstrapped_rms(std::span<const double> squares) {
   constexpr int resamplings = 400;
   std::minstd_rand random;
@@ -187,7 +188,7 @@ struct TimedError {
   double time, error;
 };
 
-/// Ours, the fastest first; each is more exact than those before it.
+/// Returns the Pareto front of our settings, fastest first; each is more exact than those before it.
 std::vector<TimedError> front_of(std::span<const Point> points) {
   std::vector<TimedError> front;
   for (const Point& point : points)

@@ -6,7 +6,7 @@
 
 namespace understudy {
 
-/// The upper one of two in the middle; 0 of none.
+/// Returns the median: the upper one of two central values; 0 for no values.
 inline double median(std::vector<double> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);

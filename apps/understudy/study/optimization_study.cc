@@ -26,12 +26,12 @@ using spu::Optimization;
 
 constexpr int frames = 15, frames_that_settle = 5;
 
-/// How the scene is shown so that there is something to leave out.
+/// How to show the scene so that the optimization has an effect.
 struct Show {
   Optimization optimization;
   Words viewer;
   Words run = {};
-  bool rising = false;  ///< in colours that rise with the value
+  bool rising = false;  ///< with colours that increase with the value
 };
 
 const std::array shows{
@@ -46,7 +46,7 @@ const std::array shows{
     Show{Optimization::unseen_depth, {"--orbit", "3", "--write-depth"}},
 };
 
-/// A maximum leaves dominated samples out where colours rise with the value.
+/// A maximum projection skips dominated samples if colours increase with the value.
 constexpr const char* rising_table = R"({"knots": [{"at": 0, "colour": [0, 0, 0], "opacity": 0},
                                                   {"at": 1, "colour": [1, 1, 1], "opacity": 1}]})";
 

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int viewer_frames = 9, frames_until_settled = 3, vtk_frames = 3;
-constexpr const char* python = "/usr/bin/python3";  // the one that Debian's packages are for
+constexpr const char* python = "/usr/bin/python3";  // the interpreter for which Debian's packages are installed
 
 fs::path vtk_script() {
   return this_installation().data / "vtk_mappers.py";

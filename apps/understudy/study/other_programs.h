@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What other programs show of a scene, and how long they take: the bundled viewer, bare, whose slices OpenGL
-// blends in eight bits, and VTK's two volume mappers, where they are installed. All get the same texels, table,
-// camera and number of samples a voxel. Their errors are of colour alone: not every image tells opacity.
+// Measures images and times of other programs: the bundled viewer without Understudy, whose slices OpenGL
+// blends in eight bits, and VTK's two volume mappers, if installed. All get the same texels, transfer function,
+// camera and number of samples per voxel. Errors are of colour only, because some images lack opacity.
 #pragma once
 
 #include <filesystem>
@@ -15,17 +15,17 @@ namespace understudy::launcher::study {
 
 class OtherPrograms {
  public:
-  /// Works in `folder`, which it makes, and removes in the end. Looks for the programs.
+  /// Works in `folder`, which it creates and finally removes. Checks which programs are available.
   explicit OtherPrograms(std::filesystem::path folder);
   OtherPrograms(const OtherPrograms&) = delete;
   OtherPrograms& operator=(const OtherPrograms&) = delete;
   ~OtherPrograms();
 
-  /// Why this one cannot be measured here, and what to install; nothing when it can.
+  /// Returns why this program cannot be measured here, and what to install; nothing if it can.
   std::optional<std::string> absence(Scheme scheme) const;
 
-  /// `rays` gets what was compared, with the reference's opacity. Throws std::runtime_error with the program's
-  /// last words.
+  /// Returns the compared rays in `rays`, with the reference's opacity. Throws std::runtime_error with the
+  /// end of the program's output.
   Point measure(const Scene& scene, const Setting& setting, Scene::Rays& rays) const;
 
  private:

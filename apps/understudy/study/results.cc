@@ -137,7 +137,7 @@ std::string row_of(const SceneResults& scene, const Point& point) {
 }
 
 void write(const std::filesystem::path& path, const std::string& text) {
-  // Whoever stops a study in between finds the last whole file.
+  // Written to a temporary file first: an interrupted study leaves the last complete file.
   const std::filesystem::path part = path.string() + ".part";
   std::ofstream file(part, std::ios::binary);
   file << text;
@@ -171,7 +171,7 @@ Results read_results(const std::filesystem::path& folder, int edge, int stride) 
       return results;
     for (const Json& scene : json.at("scenes")) results.scenes.push_back(scene_of(scene));
   } catch (const std::exception&) {
-    // Of another version, or not a study's: it is made anew.
+    // From another version, or not a study: measure everything again.
     results.scenes.clear();
   }
   return results;

@@ -31,13 +31,14 @@ using volume::Rgba;
 using volume::TransferFunction;
 
 constexpr std::size_t slice_range_bytes = std::size_t(16) << 20;
-/// As many as most viewers' tables have.
+/// Entries of the transfer function, as many as in most viewers.
 constexpr std::size_t table_entries = 256;
-/// Of tables for other steps than one voxel: all show one medium, whose opacity is linear between the entries
-/// for one voxel. Tables of segments hold the square of their entries.
+/// Limits of the entries of transfer functions for other steps than one voxel: all represent the same
+/// medium, whose opacity is linear between the entries for one voxel. The size of a pre-integration table is
+/// the square of its entries.
 constexpr std::size_t most_entries = 4096, most_entries_of_segments = volume::max_pre_integration_edge;
 
-/// `table` at 256 values; between them it is taken for linear, by the reference too.
+/// Samples `table` at 256 values. Between them it is considered linear, also by the reference.
 TransferFunction resampled(const TransferFunction& table) {
   TransferFunction result{table.low, table.high, {}};
   const auto last = double(table.entries.size() - 1);
@@ -57,7 +58,7 @@ std::array<double, 4> sample_of(const TransferFunction& table, double value) {
   return entry_at(table, share * double(table.entries.size() - 1));
 }
 
-/// Of one voxel.
+/// Returns the greatest optical depth of one voxel.
 double greatest_depth(const TransferFunction& table) {
   double opacity = 0;
   for (const Rgba& entry : table.entries) opacity = std::max(opacity, double(entry[3]));
@@ -133,7 +134,7 @@ Scene::Scene(const SceneDescription& description, int edge, int stride)
   table_ = resampled(sampled(spanning(description.control_points, low, high), low, high, 1));
   table_.low = float(mapping.normalised(double(table_.low)));
   table_.high = float(mapping.normalised(double(table_.high)));
-  if (table_.low > table_.high) {  // texels fall where values rise
+  if (table_.low > table_.high) {  // texels decrease with increasing values
     std::swap(table_.low, table_.high);
     std::ranges::reverse(table_.entries);
   }
@@ -178,7 +179,8 @@ void Scene::hand_out(const std::filesystem::path& texels, const std::filesystem:
   raw.write(reinterpret_cast<const char*>(texels_.data()), std::streamsize(texels_.size()));
   raw.close();
 
-  // Bytes are known for 0 to 255 everywhere; what spans another range most programs stretch to 0 to 1.
+  // All programs take bytes as 0 to 255. Other types are stretched by most programs from
+  // their actual range to 0 to 1.
   const bool bytes = description_.type == volume::TexelType::u8;
   const double low = bytes ? 0 : value_range_[0], high = bytes ? 1 : value_range_[1];
   const double unit = bytes ? 255 : description_.type == volume::TexelType::u16 ? 65535 : 1;
@@ -188,7 +190,7 @@ void Scene::hand_out(const std::filesystem::path& texels, const std::filesystem:
         plain.emplace_back(sample_of(table_, low + (high - low) * double(i) / double(table_entries - 1)));
     for (std::size_t k = 0; k < 3 && entry[3] > 0; ++k) entry[k] = std::min(entry[k] / entry[3], 1.0);
   }
-  // Where nothing shows, colours go on, so that interpolation draws no dark rim.
+  // Extends colours into transparent entries, so that interpolation produces no dark rim.
   for (std::size_t i = 1; i < plain.size(); ++i)
     if (plain[i][3] <= 0) std::copy_n(plain[i - 1].begin(), 3, plain[i].begin());
   for (std::size_t i = plain.size() - 1; i-- > 0;)

@@ -31,17 +31,17 @@ namespace fs = std::filesystem;
 
 constexpr int quick_edge = 256, whole_edge = 512;
 constexpr int quick_stride = 13, whole_stride = 13;
-/// Images that are timed, of all cameras in turn.
+/// Number of timed images, which alternate between all cameras.
 constexpr int quick_repetitions = 5, whole_repetitions = 15;
-/// Of all work on a scene, the part that its reference takes.
+/// Estimated fraction of the work on a scene that its reference takes.
 constexpr double reference_share = 0.6;
-/// And that of our settings.
+/// Estimated fraction of the work on a scene that our settings take.
 constexpr double settings_share = 0.3;
 constexpr int page_patience_ms = 120000;
 
 struct StudyArguments {
   std::vector<std::string> scenes;
-  std::vector<std::string> volumes;  ///< FILE or FILE,TABLE
+  std::vector<std::string> volumes;  ///< each is FILE or FILE,TABLE
   std::string out = "out/study";
   bool quick = false;
   bool fresh = false;
@@ -50,7 +50,7 @@ struct StudyArguments {
   ProgressOptions progress;
 };
 
-/// How far all scenes are, and how long the rest takes.
+/// Shows the progress of all scenes, and the remaining time.
 class StudyProgress {
  public:
   StudyProgress(std::size_t scenes, ProgressStyle style) : scenes_(scenes), progress_(style) {}
@@ -59,7 +59,7 @@ class StudyProgress {
     scene_ = scene;
     name_ = name;
   }
-  /// `done`: of the scene. Any thread may call it.
+  /// `done` is the fraction of the scene that is done. May be called from any thread.
   void show(double done, const std::string& what) {
     const double all = (double(scene_) + done) / double(scenes_);
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
@@ -98,7 +98,8 @@ std::vector<SceneDescription> scenes_of(const StudyArguments& arguments) {
   return all;
 }
 
-/// From black (nothing) over red and yellow to white (a tenth and more), a decade a fifth of the way.
+/// Writes errors as colours from black (at most 1e-6) over red and yellow to white (0.1 and more); each
+/// decade is a fifth of the scale.
 void write_error_map(const fs::path& path, const Scene& scene, const Scene::Rays& rays) {
   constexpr int pixels_a_ray = 12;
   const int across = scene.rays_across();
@@ -126,7 +127,8 @@ bool has_error_map(const Setting& setting) {
   return setting.step == 1 && (setting.termination < 1e-4);
 }
 
-/// Settings that `results` has no point of, and that can be measured; why others cannot is noted there.
+/// Returns the settings that can be measured and are not yet in `results`; records there why
+/// others cannot be measured.
 std::vector<Setting> missing_settings(SceneResults& results, bool quick, OtherPrograms* others) {
   std::vector<Setting> missing;
   results.absent.clear();
@@ -143,7 +145,7 @@ std::vector<Setting> missing_settings(SceneResults& results, bool quick, OtherPr
   return missing;
 }
 
-/// Where there is one for `setting`, of the first camera's rays.
+/// Writes the error map of the first camera's rays, if `setting` has one.
 void add_error_map(const Setting& setting, const Scene& scene, const Scene::Rays& rays, SceneResults& results,
                    const fs::path& folder) {
   if (!has_error_map(setting)) return;
@@ -154,7 +156,7 @@ void add_error_map(const Setting& setting, const Scene& scene, const Scene::Rays
   results.error_maps[text_of(setting)] = file;
 }
 
-/// Settings of ours: first the error of each, then their times, for which they take turns.
+/// Measures our settings: first the error of each, then their times, for which they take turns.
 void study_ours(const std::vector<Setting>& ours, const Scene& scene, SceneResults& results,
                 const fs::path& folder, int repetitions, const std::function<void(double done)>& progress) {
   std::vector<std::unique_ptr<Measurement>> measurements;
@@ -174,7 +176,7 @@ void study_ours(const std::vector<Setting>& ours, const Scene& scene, SceneResul
   for (const auto& measurement : measurements) results.points.push_back(measurement->point());
 }
 
-/// Adds the point of another program, or of slices in eight bits, and its error map where there is one.
+/// Adds the point of another program, or of slices in eight bits, and its error map if it has one.
 void study_other(const Setting& setting, const Scene& scene, SceneResults& results, const fs::path& folder,
                  OtherPrograms* others) {
   Scene::Rays rays;
@@ -228,10 +230,10 @@ void study_scene(const SceneDescription& description, SceneResults& results, Res
   write_results(folder, all);
 }
 
-/// index.html, by the script beside the programs.
+/// Makes index.html with the script in the data folder.
 int write_page(const fs::path& folder) {
   const fs::path script = this_installation().data / "study_page.py";
-  // The system's own comes first: matplotlib from Debian is for that one.
+  // The system's python comes first, because Debian installs matplotlib for it.
   const fs::path python = fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
   int status = 1;
   try {
@@ -280,12 +282,12 @@ void print_savings(const SceneResults& scene) {
   }
 }
 
-/// What is not yet in `results`; the folder has all of them after each scene.
+/// Measures what is not yet in `results`; writes the results to the folder after each scene.
 void study_scenes(const std::vector<SceneDescription>& scenes, const StudyArguments& arguments,
                   const fs::path& folder, Results& results) {
   std::optional<OtherPrograms> others;
   if (!arguments.alone) others.emplace(folder / "other-programs");
-  // One scene of a quick study is looked into for what is left out: the first that is somebody's data.
+  // A quick study measures optimizations on one scene only: the first one from a file.
   const auto from_file = std::ranges::find_if(
       scenes, [](const SceneDescription& scene) { return !scene.volume.starts_with("synthetic:"); });
   const std::size_t looked_into = from_file == scenes.end() ? 0 : std::size_t(from_file - scenes.begin());
@@ -322,7 +324,7 @@ void print_results(const Results& results) {
 
 int run_study(const StudyArguments& arguments) {
   const std::vector<SceneDescription> scenes = scenes_of(arguments);
-  // A path that is wrong is said now, not when its turn comes.
+  // A wrong path is reported now, not when its turn comes.
   for (const SceneDescription& scene : scenes) volume::open_volume(scene.volume);
   const fs::path folder = arguments.out;
   std::error_code error;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy study --out DIR`: error against run time, over a grid of settings and a set of scenes.
+// `understudy study --out DIR`: measures error against run time over a grid of settings and a set of scenes.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""study_page.py DIR: DIR/index.html from DIR/study.json, self-contained. `understudy study` calls it."""
+"""study_page.py DIR: makes the self-contained DIR/index.html from DIR/study.json. Called by `understudy study`."""
 
 import base64
 import html
@@ -30,7 +30,7 @@ def plot(draw, alt):
     figure, axes = plt.subplots(figsize=(6.2, 5.2))
     draw(axes)
     axes.grid(True, which="both", alpha=0.25)
-    for axis in (axes.xaxis, axes.yaxis):  # less than two decades would have next to no number
+    for axis in (axes.xaxis, axes.yaxis):  # label minor ticks: less than two decades would have hardly any label
         low, high = axis.get_view_interval()
         if high < 100 * low:
             axis.set_minor_formatter(ticker.LogFormatterSciNotation(minor_thresholds=(2, 0.5)))
@@ -52,7 +52,9 @@ def of_scheme(points, scheme):
 
 
 def work_precision(scene):
-    """RMS error of colour over time, log-log; a line joins the steps of one scheme, small marks end rays early."""
+    """Plots the RMS error of colour over time, log-log. Lines join the steps of one scheme; small marks use early ray
+    termination.
+    """
     def draw(axes):
         for scheme, colour in COLOURS.items():
             points = of_scheme(timed(scene), scheme)
@@ -112,7 +114,7 @@ def factor(ratio):
 
 
 def advantages(study):
-    """Time and error of the other programs, and by what our front is better."""
+    """Returns a table of time and error of the other programs, and of the factors by which our front is better."""
     rows = ["<tr><th>scene<th class=name>program<th>ms<th>RMS of colour<th>its time / ours, at equal error"
             "<th>its error / ours, at equal time</tr>"]
     for scene in study["scenes"]:
@@ -163,7 +165,7 @@ def section(scene, folder):
 
 
 def savings(study):
-    """What was left out of frames of the viewer, and what frames take without that."""
+    """Returns a table of the work skipped in frames of the viewer, with frame times with and without skipping it."""
     rows = ["<tr><th>scene<th class=name>item<th>skipped<th class=name>of<th>ms per frame<th>ms without<th>ratio"
             "<th>images differ by<th>tolerance<th class=name>shown with</tr>"]
     for scene in study["scenes"]:

@@ -54,7 +54,7 @@ std::vector<std::string> viewer_command(const Scene& scene, const fs::path& fold
   const volume::OrbitCamera& camera = Scene::cameras().front();
   option("--azimuth", camera.azimuth);
   option("--elevation", camera.elevation);
-  option("--distance", camera.distance / 2);  // it counts whole diagonals
+  option("--distance", camera.distance / 2);  // the viewer takes whole diagonals
   option("--window-size", scene.edge(), scene.edge());
   for (const char* flag : {"--offscreen", "--no-frame"}) arguments.emplace_back(flag);
   return arguments;
@@ -62,10 +62,10 @@ std::vector<std::string> viewer_command(const Scene& scene, const fs::path& fold
 
 std::string output_of(std::vector<std::string> arguments, const fs::path& log) {
   const std::string name = fs::path(arguments.front()).filename().string();
-  fs::remove(log);  // children write at its end
+  fs::remove(log);  // child processes append to it
   Environment environment = current_environment();
   environment["LIBGL_ALWAYS_SOFTWARE"] = std::string("1");
-  environment["UNDERSTUDY_CONFIG"] = "";  // the user's defaults would be measured
+  environment["UNDERSTUDY_CONFIG"] = "";  // ignores the user's defaults
   std::optional<Ending> ending;
   try {
     ChildProcess child({std::move(arguments), std::move(environment), log, true});

@@ -19,12 +19,12 @@ using volume::Vec3;
 
 constexpr double degrees = 180 / std::numbers::pi;
 
-/// Axes of the eye in the volume's.
+/// The eye's axes in the volume's coordinates.
 struct Axes {
   Vec3 side{}, up{}, back{};
 };
 
-/// What orbit_request() calls level: the side of a camera that does not roll.
+/// The side axis of a camera without roll, as in orbit_request().
 Vec3 level_side(double azimuth) {
   return {std::cos(azimuth), std::sin(azimuth), 0};
 }
@@ -42,7 +42,7 @@ Axes axes_of(const volume::OrbitCamera& camera) {
 void set_axes(volume::OrbitCamera& camera, const Axes& axes) {
   const double across = std::hypot(axes.back[0], axes.back[1]);
   camera.elevation = std::atan2(axes.back[2], across) * degrees;
-  // At the poles any azimuth will do: the roll makes up for it.
+  // At the poles any azimuth is valid, because the roll compensates for it.
   const double azimuth = across > 0 ? std::atan2(axes.back[0], -axes.back[1]) : camera.azimuth / degrees;
   camera.azimuth = azimuth * degrees;
   const Vec3 level = level_side(azimuth);
@@ -63,14 +63,14 @@ ViewCamera rotated(const ViewCamera& camera, const ImagePoint& from, const Image
     return on_ball({point[0] - camera.shift[0], point[1] - camera.shift[1]});
   };
   const Vec3 a = around_middle(from), b = around_middle(to);
-  // The quaternion (w, v) of twice the angle.
+  // The quaternion (w, v), which rotates by twice the angle.
   const double w = dot(a, b);
   const Vec3 v = cross(a, b);
   const auto turned = [&](const Vec3& p) {
     const Vec3 t = scale(cross(v, p), 2);
     return add(add(p, scale(t, w)), cross(v, t));
   };
-  // What turns is the volume before the eye: each axis of the volume, seen from the eye, is turned.
+  // The volume rotates before the eye: rotate each of its axes, in eye coordinates.
   const Axes axes = axes_of(camera.orbit);
   std::array<Vec3, 3> seen{};
   for (std::size_t k = 0; k < 3; ++k) seen[k] = turned({axes.side[k], axes.up[k], axes.back[k]});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera of a viewer as its hand moves it: rotated by an arcball, moved across the image, brought nearer.
+// The camera of a view as the user moves it: rotated by an arcball, panned and zoomed.
 #pragma once
 
 #include <array>
@@ -12,30 +12,30 @@ struct RenderRequest;
 
 namespace understudy::launcher {
 
-/// In halves of the image's shorter side, right and up from its middle.
+/// A point in the image, in halves of its shorter side, right and up from its centre.
 using ImagePoint = std::array<double, 2>;
 
 struct ViewCamera {
   volume::OrbitCamera orbit;
-  ImagePoint shift{};  ///< where the volume's middle is seen
+  ImagePoint shift{};  ///< image position of the volume's centre
 
   bool operator==(const ViewCamera&) const = default;
 };
 
-constexpr double nearest_distance = 0.02;  ///< in half diagonals, as OrbitCamera has it
+constexpr double nearest_distance = 0.02;  ///< in half diagonals, as in OrbitCamera
 constexpr double farthest_distance = 50;
 constexpr double farthest_shift = 100;
 
-/// Shoemake's ball of radius 1 around the volume's middle: the point under `from` comes under `to`, turned by
-/// twice the angle between them, so that any way of several moves ends where one move would. (Shoemake 1992,
-/// ARCBALL, Graphics Interface.)
+/// Rotates by Shoemake's ball of radius 1 around the volume's centre: the point at `from` moves to `to`. The
+/// rotation is by twice the angle between them, so that a sequence of moves ends where a single move would.
+/// (Shoemake 1992, ARCBALL, Graphics Interface.)
 ViewCamera rotated(const ViewCamera& camera, const ImagePoint& from, const ImagePoint& to);
-/// What is seen moves by so much.
+/// Moves the visible content by this displacement.
 ViewCamera panned(const ViewCamera& camera, const ImagePoint& by);
-/// The camera comes nearer by the factor (below 1: goes away); what is seen at `at` stays there.
+/// Moves the camera nearer by the factor (below 1: farther); what is visible at `at` stays there.
 ViewCamera zoomed(const ViewCamera& camera, double factor, const ImagePoint& at);
 
-/// Brings the request of `camera.orbit` where the shift is.
+/// Applies the shift to a request that was made from `camera.orbit`.
 void shift(volume::RenderRequest& request, const ImagePoint& shift);
 
 }  // namespace understudy::launcher

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DOUT=page_files.cc -DFILES="a.html;b.js" -P embed_page.cmake: the files as text in a C++ source.
+# cmake -DOUT=page_files.cc -DFILES="a.html;b.js" -P embed_page.cmake: writes the files as text to a C++ source.
 set(text "#include \"apps/understudy/view/page_files.h\"\n\n#include <array>\n\nnamespace understudy::launcher {\n\n"
   "std::span<const PageFile> page_files() {\n  using Files = std::array<PageFile, ")
 list(LENGTH FILES count)
@@ -17,7 +17,7 @@ foreach(file ${FILES})
   if(name STREQUAL "index.html")
     set(name "")
   endif()
-  # Brackets and semicolons mean something to CMake's lists: the file is appended as one string.
+  # CMake's lists interpret brackets and semicolons, so the file is appended as one string.
   file(READ ${file} contents)
   string(APPEND text "      {\"/${name}\", \"${type}\", R\"page(")
   string(APPEND text "${contents}")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// understudy-view: what `understudy view` becomes, with the same words.
+// understudy-view: the program that `understudy view` executes, with the same arguments.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of page/, in the program.
+// The files of page/, embedded in the program.
 #pragma once
 
 #include <span>

@@ -22,7 +22,7 @@ constexpr int moving_quality = 85;
 Json json_of(const volume::TransferControlPoints& table, double low, double high) {
   Json control_points = Json::array();
   for (const volume::TransferControlPoints::ControlPoint& point : table.control_points) {
-    // Pages place control points in the range, whatever the file said.
+    // The page positions control points within the range, even if the file used values.
     const double at = table.of_values ? (point.at - low) / (high - low) : point.at;
     control_points.push_back({{"at", at}, {"colour", point.colour}, {"opacity", point.opacity}});
   }
@@ -37,7 +37,7 @@ Json json_of(const ViewCamera& camera) {
           {"shift", camera.shift}};
 }
 
-/// In texture space; the outer half texel belongs to the outermost cells.
+/// Returns a box in texture space; the outer half texel belongs to the outermost cells.
 Json json_of(const volume::TexelBox& cells, const volume::VolumeDescription& volume) {
   const volume::TexelBox all = volume::cell_lattice(volume).box();
   Json corners = Json::array({Json::array(), Json::array()});
@@ -49,7 +49,7 @@ Json json_of(const volume::TexelBox& cells, const volume::VolumeDescription& vol
   return corners;
 }
 
-/// JSON has no other numbers, and text from elsewhere may be any bytes.
+/// Replaces invalid UTF-8, because names of files may be any bytes.
 std::string dumped(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said to a viewer's page: JSON text, and images with a head of JSON (README.md lists the keys).
+// Messages to a page: JSON text, and images with a JSON header (README.md lists the keys).
 #pragma once
 
 #include <cstddef>
@@ -15,21 +15,21 @@ namespace understudy::launcher {
 
 enum class Readiness { loading, lost, ready };
 
-/// How far the nodes are; `text` says it to people.
+/// State of the nodes; `text` describes it to the user.
 std::string status_message(Readiness readiness, std::string_view text, double part_done);
 
-/// What is there to be seen, and how it is seen at first.
+/// The volume, and the initial settings of the view.
 std::string volume_message(const ShownVolume& volume, const ViewState& state);
 
-/// What the image `sequence` and the ranks say of themselves.
+/// Figures of the image `sequence` and of the ranks.
 std::string figures_message(std::uint64_t sequence, const FileScene& scene,
                             const std::optional<ShownVolume::Exactness>& exactness,
                             const std::vector<compositor::RankLoad>& ranks);
 
-/// What was asked for cannot be drawn.
+/// The requested image cannot be rendered.
 std::string refusal_message(std::uint64_t sequence, std::string_view reason);
 
-/// The head's length (four bytes, the lowest first), the head, and the image: PNG, or JPEG.
+/// The length of the header (four bytes, little endian), the header, and the image as PNG or JPEG.
 std::vector<std::byte> image_message(const FileScene& scene, const ViewState& state,
                                      const ShownVolume::Drawn& drawn);
 

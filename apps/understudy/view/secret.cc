@@ -12,7 +12,7 @@
 namespace understudy::launcher {
 namespace {
 
-/// Of other proofs under the same secret, none is one of these.
+/// Prefix that distinguishes these proofs from others made with the same secret.
 constexpr std::string_view purpose = "understudy view ";
 
 std::string digits_of(std::span<const unsigned char> bytes) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a viewer must know to be let in, and how it shows that it does without saying it: the server names a
-// number that it used never before, the viewer answers with HMAC-SHA-256 (RFC 2104) of it under the secret.
+// Authenticates a viewer without transmitting the secret: the server sends a random challenge that it has never
+// used before, and the viewer answers with its HMAC-SHA-256 (RFC 2104) under the secret.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,13 @@
 
 namespace understudy::launcher {
 
-/// So many random bytes, two hexadecimal digits each. Throws std::runtime_error.
+/// Returns this number of random bytes, each as two hexadecimal digits. Throws std::runtime_error.
 std::string random_digits(std::size_t bytes);
 
-/// 64 hexadecimal digits; the secret's own digits, as text, are the key.
+/// Returns the proof as 64 hexadecimal digits. The key is the text of the secret's digits.
 std::string proof_of(std::string_view secret, std::string_view challenge);
 
-/// In a time that does not tell where they differ.
+/// Compares in a time that does not depend on where they differ.
 bool equal(std::string_view a, std::string_view b);
 
 }  // namespace understudy::launcher

@@ -14,7 +14,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Rays that are integrated of an image at rest, and what that may take.
+/// Number of rays that are integrated at once to check an image at rest, and the time limit.
 constexpr std::size_t rays_at_once = 256;
 constexpr double most_ms = 40;
 
@@ -26,7 +26,7 @@ bool has_integral(const volume::RenderRequest& request) {
 }  // namespace
 
 void ShownVolume::load(const std::function<void(const std::vector<compositor::RankLoad>&)>& progress) {
-  image_ = {};  // belongs to the service
+  image_ = {};  // its pixels belong to the service
   steps_.reset();
   service_.reset();
   service_ = make_();
@@ -44,7 +44,7 @@ void ShownVolume::load(const std::function<void(const std::vector<compositor::Ra
   histogram_ = measured_histogram();
 }
 
-// Bins of integers are a whole number of them wide: where some had one more, they would stand out.
+// For integers, all bins have the same integer width: bins with one more value would stand out.
 ShownVolume::Histogram ShownVolume::measured_histogram() {
   Histogram result;
   if (values_.low > values_.high) return result;
@@ -64,7 +64,7 @@ ShownVolume::Histogram ShownVolume::measured_histogram() {
   result.high = high;
   result.counts =
       service_->histogram(steps_->volume_of(*steps_->shown()), {std::min(a, b), std::max(a, b), count});
-  if (a > b) std::ranges::reverse(result.counts);  // texels fall where values rise
+  if (a > b) std::ranges::reverse(result.counts);  // texels decrease with increasing values
   return result;
 }
 
@@ -98,7 +98,7 @@ std::optional<ShownVolume::Exactness> ShownVolume::exactness() {
 }
 
 std::vector<compositor::RankLoad> ShownVolume::ranks() {
-  // The image of the service is valid until the next call but integrals().
+  // The service's image is valid only until the next call other than integrals().
   if (image_.rgba.data() != kept_.data()) {
     kept_.assign(image_.rgba.begin(), image_.rgba.end());
     image_.rgba = kept_;

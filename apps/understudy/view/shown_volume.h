@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The volume that viewers look at, or the time steps of a series, behind a service that may be lost and made
-// again.
+// The displayed volume, or the time steps of a series, behind a service that may be lost and reconnected.
 #pragma once
 
 #include <functional>
@@ -23,48 +22,49 @@ namespace understudy::launcher {
 
 class ShownVolume {
  public:
-  /// Of a series, as many time steps stay loaded as `memory` allows. `scene` outlives this.
+  /// `scene` must outlive this object. Of a series, as many time steps stay loaded as `memory` allows.
   ShownVolume(const FileScene& scene, ServiceMaker make, RankMemory memory)
       : scene_(scene), make_(std::move(make)), memory_(std::move(memory)) {}
 
   const FileScene& scene() const { return scene_; }
 
-  /// Makes a service, and has it read the volume, or the first time step that is shown; `progress` hears after
-  /// every part how far the ranks are.
-  /// Throws ServiceLost and RequestRefused.
+  /// Makes a service and loads the volume, or the first time step to be shown. Calls `progress` with the state
+  /// of the ranks after every part. Throws ServiceLost and RequestRefused.
   void load(const std::function<void(const std::vector<compositor::RankLoad>&)>& progress);
 
-  // From here on the volume is loaded. What is lost throws ServiceLost; then load() again.
+  // The following functions require a loaded volume. If the service is lost, they throw
+  // ServiceLost; call load() again.
 
   struct Drawn {
     RgbImage image;
     volume::RenderRequest request;
     volume::FrameCounts counts;
-    double ms = 0;       ///< to render and to composite, as it was waited for
-    double load_ms = 0;  ///< before that, to read its time step
+    double ms = 0;       ///< time to render and composite, as seen by the caller
+    double load_ms = 0;  ///< time to read its time step before that
   };
-  /// A time step that is not there is read first; what `progress` throws meanwhile is thrown on.
+  /// Reads the time step first if it is not loaded; rethrows what `progress` throws.
   Drawn draw(const ViewState& state, const TimeSteps::Progress& progress);
-  /// Reads some of the time step that comes next, without forgetting those in use; false: there is nothing more
-  /// to read. What was drawn last has no exactness() afterwards.
+  /// Reads a further part of the next time step, without removing those in use; returns false if there is
+  /// nothing more to read. Afterwards, exactness() of the last image is not available.
   bool read_ahead(std::span<const int> in_use);
 
   struct Exactness {
-    double error = 0;  ///< greatest difference of a channel from the integral, of the rays that were looked at
+    double error = 0;  ///< greatest difference of a channel from the integral, over the rays
     std::size_t rays = 0;
   };
-  /// Of the image drawn last, each time of other rays; nothing where what it shows has no integral (surfaces,
-  /// light, other operators).
+  /// Checks the last image, with different rays in each call; returns nothing if it has no integral
+  /// (surfaces, light, other operators).
   std::optional<Exactness> exactness();
 
-  /// What each rank has, and what its part of the last image took.
+  /// Returns what each rank holds, and the cost of its part of the last image.
   std::vector<compositor::RankLoad> ranks();
   int nodes() const { return service_->nodes(); }
-  /// By which colours go: of the first step that was shown, or of all where their files tell them.
+  /// The range of values that the transfer function refers to: of the first step that was shown, or of all
+  /// steps if their files specify it.
   const volume::TexelFigures& values() const { return values_; }
 
   struct Histogram {
-    double low = 0;  ///< as values of the volume: where the first bin begins
+    double low = 0;  ///< begin of the first bin, as a value of the volume
     double high = 1;
     std::vector<std::uint64_t> counts;
   };
@@ -77,13 +77,13 @@ class ShownVolume {
   ServiceMaker make_;
   RankMemory memory_;
   std::unique_ptr<compositor::LoadingService> service_;
-  std::optional<TimeSteps> steps_;  ///< of this service
+  std::optional<TimeSteps> steps_;  ///< of service_
   volume::TexelFigures values_;
   Histogram histogram_;
   // Of the last image.
   volume::RenderRequest request_;
   volume::ImageView image_;
-  std::vector<float> kept_;  ///< its pixels, once the service's are gone
+  std::vector<float> kept_;  ///< copy of its pixels, for calls that invalidate the service's
   std::size_t rays_looked_at_ = 0;
 };
 

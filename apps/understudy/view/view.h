@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy view [-n N | --connect ADDRESS | --hostfile F] VOLUME`: a volume in a file to look at and to
-// turn, in a browser or in a window, without OpenGL. Nodes read and render it; what stands here shows images
-// and hears the hand.
+// `understudy view [-n N | --connect ADDRESS | --hostfile F] VOLUME`: displays a volume in a file and lets the
+// user rotate it, in a browser or in a window, without OpenGL. Nodes read and render the volume; this folder
+// displays images and handles input.
 #pragma once
 
 #include <CLI/CLI.hpp>

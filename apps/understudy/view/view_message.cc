@@ -100,7 +100,7 @@ ViewMessage decode_view_message(std::string_view text) {
   if (text.size() > max_view_message_bytes)
     throw MalformedView(
         fmt::format("a message of {} bytes exceeds the limit of {}", text.size(), max_view_message_bytes));
-  // Text that is no JSON gives a value that is discarded, and is no object.
+  // Invalid JSON yields a discarded value, which is not an object.
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) throw MalformedView("the message is not a JSON object");
   ViewMessage message;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a viewer's page asks for, as JSON text (README.md lists the keys). Whoever sends it may be anybody:
-// every length and every number is compared with a limit.
+// Requests of a page, as JSON text (README.md lists the keys). The sender is untrusted: every length and every
+// number is checked against a limit.
 #pragma once
 
 #include <cstdint>
@@ -22,21 +22,21 @@ constexpr std::size_t max_view_control_points = 256;
 constexpr double least_view_step = 0.25;  ///< voxels
 constexpr double most_view_step = 4;
 
-/// The message cannot be believed; the text says which key, and what is wrong with it.
+/// The message is invalid; the text says which key, and what is wrong with it.
 class MalformedView : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What is not there stays as it was.
+/// Missing keys leave the state unchanged.
 struct ViewMessage {
-  std::uint64_t sequence = 0;     ///< comes back with the image
-  bool still = true;              ///< false: while the camera moves
-  std::optional<bool> lossless;   ///< while it moves as well
-  std::optional<double> took_ms;  ///< the last image, from the hand to the eye
+  std::uint64_t sequence = 0;     ///< returned with the image
+  bool still = true;              ///< whether the camera is at rest
+  std::optional<bool> lossless;   ///< also while the camera moves
+  std::optional<double> took_ms;  ///< time from input to display of the last image
   std::optional<std::array<int, 2>> size;
   std::optional<ViewCamera> camera;
-  std::optional<std::array<ImagePoint, 2>> rotate;  ///< from, to
+  std::optional<std::array<ImagePoint, 2>> rotate;  ///< from and to
   std::optional<ImagePoint> pan;
   struct Zoom {
     double by = 1;
@@ -45,10 +45,10 @@ struct ViewMessage {
   std::optional<Zoom> zoom;
   std::optional<volume::TransferControlPoints> table;
   std::optional<bool> shows_volume;
-  std::optional<std::vector<SurfaceChoice>> surfaces;  ///< at places of the range
+  std::optional<std::vector<SurfaceChoice>> surfaces;  ///< positions are relative to the range of values
   std::optional<bool> light;
   std::optional<double> step;    ///< voxels
-  std::optional<int> time_step;  ///< of a series, counted from 0
+  std::optional<int> time_step;  ///< time step of a series, counted from 0
 };
 
 /// Throws MalformedView.

@@ -11,14 +11,14 @@
 namespace understudy::launcher {
 namespace {
 
-/// Where no light was asked for on the command line, it shines from the eye on everything.
+/// The light if none was given on the command line: from the eye, on everything.
 volume::Light usual_light(const FileScene& scene) {
   ShadingArguments arguments;
   arguments.light = "all";
   return *shading_of(arguments, scene.extent()).light;
 }
 
-/// An image is never divided by more along a side.
+/// Largest factor by which a side of an image is reduced.
 constexpr double coarsest = 6;
 
 }  // namespace
@@ -83,7 +83,7 @@ volume::RenderRequest ViewState::request(const FileScene& scene, const volume::T
   image.height = now[1];
   Shading& shading = image.shading;
   if (!shading.surfaces.empty() || shading.light) {
-    // These show under `over`, with samples or segments.
+    // Surfaces and light require `over`, with samples or segments.
     shading.op = volume::Operator::over;
     if (shading.method == volume::Method::adaptive) shading.method = volume::Method::post_classified;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one viewer has in sight: each browser window, and each window of its own, has its own.
+// The view of one user: each browser window has its own, and so has each window of the program.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ class ViewState {
  public:
   explicit ViewState(const FileScene& scene);
 
-  /// Throws MalformedView, with the state as it was, for a time step that there is not.
+  /// Throws MalformedView, with the state unchanged, if the time step does not exist.
   void apply(const ViewMessage& message);
 
   const ViewCamera& camera() const { return camera_; }
@@ -26,34 +26,35 @@ class ViewState {
   std::uint64_t sequence() const { return sequence_; }
   int time_step() const { return time_step_; }
 
-  /// Of the image that is due: smaller while the camera moves, as far as its time asks for.
+  /// Size of the next image: reduced while the camera moves, as far as its time requires.
   std::array<int, 2> size() const;
-  /// The image took so long to make. What the viewer says of the whole way to the eye counts more.
+  /// Records the time to make an image. The time from input to display, as reported by
+  /// the page, takes precedence.
   void took(const std::array<int, 2>& size, double ms);
 
-  /// The image that is due. Throws std::invalid_argument.
+  /// Makes the request for the next image. Throws std::invalid_argument.
   volume::RenderRequest request(const FileScene& scene, const volume::TexelFigures& values) const;
 
-  /// While it moves, an image is to take no longer.
+  /// Target time of an image while the camera moves.
   static constexpr double moving_ms = 50;
 
  private:
   void learn(double ms);
 
   ViewCamera camera_;
-  ImageSettings image_;  ///< but for the camera
-  volume::Light light_;  ///< when there is light
+  ImageSettings image_;  ///< without the camera
+  volume::Light light_;  ///< used when the light is on
   bool still_ = true;
   bool lossless_moving_ = false;
   std::uint64_t sequence_ = 0;
   int time_step_;
-  int time_steps_;  ///< how many there are
+  int time_steps_;  ///< number of time steps
   std::array<int, 2> last_size_{};
-  std::optional<double> ms_a_pixel_;  ///< smoothed
+  std::optional<double> ms_a_pixel_;  ///< exponentially smoothed
 };
 
-/// The ghost layer of texels that whatever a viewer may ask for needs; where the volume is smaller, that its
-/// first image needs.
+/// Widens the ghost layer to what any request of a viewer may need; if the volume is smaller than that, leaves
+/// it at what the first image needs.
 void widen_ghost_layer(FileScene& scene);
 
 }  // namespace understudy::launcher

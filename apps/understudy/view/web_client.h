@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A viewer without eyes, for tests and benchmarks: speaks with `understudy view --web` as its page does.
+// A client without a display, for tests and benchmarks: communicates with `understudy
+// view --web` as the page does.
 #pragma once
 
 #include <boost/asio/connect.hpp>
@@ -23,8 +24,8 @@ class WebClient {
   using tcp = boost::asio::ip::tcp;
 
   struct Message {
-    Json json;          ///< of an image its head
-    std::string image;  ///< empty: there is none
+    Json json;          ///< for an image: its header
+    std::string image;  ///< empty: the message has no image
   };
 
   explicit WebClient(int port, const std::string& origin = "") : socket_(io_) {
@@ -38,7 +39,7 @@ class WebClient {
     socket_.handshake("127.0.0.1:" + std::to_string(port), "/socket");
   }
 
-  /// Shows the secret.
+  /// Proves knowledge of the secret.
   void greet(const std::string& secret) {
     const Message challenge = receive();
     send({{"proof", proof_of(secret, challenge.json.at("challenge").get<std::string>())}});
@@ -50,7 +51,7 @@ class WebClient {
     socket_.write(boost::asio::buffer(text));
   }
 
-  /// Throws boost::system::system_error when the conversation has ended.
+  /// Throws boost::system::system_error if the connection has ended.
   Message receive() {
     boost::beast::flat_buffer buffer;
     socket_.read(buffer);
@@ -61,13 +62,13 @@ class WebClient {
     return {Json::parse(bytes.substr(4, length)), bytes.substr(4 + length)};
   }
 
-  /// The next message of this kind.
+  /// Returns the next message of this kind; discards others.
   Message wait_for(const std::string& kind) {
     while (true)
       if (Message message = receive(); message.json.at("kind") == kind) return message;
   }
 
-  /// Asks for an image and waits for it.
+  /// Requests an image and waits for it.
   Message image(Json request) {
     request["sequence"] = ++sequence_;
     send(request);

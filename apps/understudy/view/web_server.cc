@@ -43,7 +43,7 @@ std::string_view text_of(boost::string_view view) {
   return {view.data(), view.size()};
 }
 
-/// "host" of "host:port" and of "[::1]:port".
+/// Returns the host of "host:port" or "[::1]:port".
 std::string_view without_port(std::string_view host) {
   if (host.starts_with('[')) {
     const std::size_t end = host.find(']');
@@ -56,7 +56,7 @@ std::string refusal(std::string_view reason) {
   return Json{{"kind", "refused"}, {"reason", reason}}.dump();
 }
 
-/// Asio's sockets would go on in the nodes that are started after them.
+/// Sets close-on-exec: otherwise nodes that are started later would inherit Asio's sockets.
 void keep_to_this_program(int socket) {
   ::fcntl(socket, F_SETFD, FD_CLOEXEC);
 }
@@ -67,7 +67,7 @@ bool is_own_host(std::string_view host, std::string_view bound) {
   const std::string name(without_port(host));
   error_code no_address;
   asio::ip::make_address(name, no_address);
-  // Addresses are no names that somebody else could lead here.
+  // IP addresses are safe: unlike names, they cannot be redirected to this machine by DNS.
   return !no_address || name == "localhost" || (!name.empty() && name == bound);
 }
 
@@ -110,14 +110,14 @@ class WebServer::Listener {
   const WebLimits limits_;
   asio::io_context io_{1};
   tcp::acceptor acceptor_{io_};
-  asio::steady_timer pause_{io_};  // where there is no descriptor left for a newcomer
+  asio::steady_timer pause_{io_};  // pause before accepting again, for example if there is no free descriptor
   int port_ = 0;
   Viewer next_ = 1;
-  std::map<Viewer, std::shared_ptr<Connection>> connections_;  // oldest first
+  std::map<Viewer, std::shared_ptr<Connection>> connections_;  // ordered by age, oldest first
   std::jthread thread_;
 };
 
-// One browser's connection: a request for a file, or a conversation.
+// A browser's connection: a request for a file, or a WebSocket.
 class WebServer::Listener::Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(Listener& listener, Viewer number, tcp::socket socket)
@@ -132,7 +132,7 @@ class WebServer::Listener::Connection : public std::enable_shared_from_this<Conn
   void start() {
     parser_.header_limit(std::uint32_t(listener_.limits_.header_bytes));
     parser_.body_limit(0);
-    // One time for the whole request, however slowly it comes.
+    // One time limit for the whole request, however slowly it arrives.
     stream_->expires_after(listener_.limits_.greeting);
     http::async_read(*stream_, buffer_, parser_,
                      [self = shared_from_this()](error_code error, std::size_t) { self->requested(error); });
@@ -147,7 +147,7 @@ class WebServer::Listener::Connection : public std::enable_shared_from_this<Conn
     tcp::socket& socket = conversation_ ? beast::get_lowest_layer(*conversation_).socket() : stream_->socket();
     socket.shutdown(tcp::socket::shutdown_both, ignored);
     socket.close(ignored);
-    // Whoever is being called may still hold on to the list that this one is in.
+    // Deferred, because a caller may be iterating over the map that contains this connection.
     listener_.post([self = shared_from_this()] { self->listener_.gone(self->number_); });
   }
 
@@ -201,7 +201,7 @@ class WebServer::Listener::Connection : public std::enable_shared_from_this<Conn
   }
 
   void converse() {
-    buffer_.consume(buffer_.size());  // nobody speaks before the answer
+    buffer_.consume(buffer_.size());  // the client must not send anything before the response
     stream_->expires_never();
     conversation_.emplace(std::move(*stream_));
     stream_.reset();
@@ -289,15 +289,15 @@ class WebServer::Listener::Connection : public std::enable_shared_from_this<Conn
   Listener& listener_;
   const Viewer number_;
   std::optional<beast::tcp_stream> stream_;
-  std::optional<websocket::stream<beast::tcp_stream>> conversation_;  // takes the stream's place
+  std::optional<websocket::stream<beast::tcp_stream>> conversation_;  // replaces stream_
   beast::flat_buffer buffer_{std::size_t(64) << 10U};
   http::request_parser<http::string_body> parser_;
   asio::steady_timer greeting_;
   asio::steady_timer sending_;
   std::string challenge_;
-  std::deque<Outgoing> outbox_;  // the first one is being written
+  std::deque<Outgoing> outbox_;  // the first message is being written
   bool is_viewer_ = false;
-  bool ending_ = false;  // once the outbox is empty
+  bool ending_ = false;  // drop the connection once the outbox is empty
   bool dropped_ = false;
 };
 
@@ -363,7 +363,7 @@ void WebServer::Listener::accepted(tcp::socket socket) {
   if (connections_.size() >= limits_.connections) {
     const auto oldest =
         std::ranges::find_if(connections_, [](const auto& entry) { return !entry.second->is_viewer(); });
-    if (oldest == connections_.end()) return;  // the newcomer is closed
+    if (oldest == connections_.end()) return;  // the new connection is closed
     oldest->second->drop();
     connections_.erase(oldest);
   }
@@ -401,7 +401,7 @@ void WebServer::Listener::send_to_all(const Outgoing& message) {
 WebServer::WebServer(const std::string& host, int port, std::string secret, Handlers handlers,
                      const WebLimits& limits)
     : listener_(std::make_unique<Listener>(host, port, std::move(secret), std::move(handlers), limits)) {
-  listener_->start();  // handlers may speak to this server at once
+  listener_->start();  // handlers may call this server immediately
 }
 WebServer::~WebServer() = default;
 

@@ -26,13 +26,14 @@ using Clock = std::chrono::steady_clock;
 using Viewer = WebServer::Viewer;
 
 constexpr std::size_t secret_bytes = 16;
-/// Between two attempts to have nodes again.
+/// Pause between two attempts to reconnect to nodes.
 constexpr std::chrono::seconds a_while{1};
-/// So long nobody wants anything before an image at rest is examined: the next request finds no work begun.
+/// Time without requests before the error check of an image at rest begins, so that the next
+/// request is not delayed by it.
 constexpr std::chrono::milliseconds calm{100};
-/// Of an image at rest.
+/// Number of rays that are checked of an image at rest.
 constexpr std::size_t enough_rays = 256;
-/// What is said of a load that goes on.
+/// Interval between progress messages while loading.
 constexpr std::chrono::milliseconds progress_interval{100};
 
 double part_done(const std::vector<compositor::RankLoad>& ranks) {
@@ -73,13 +74,13 @@ class WebView {
   struct Session {
     ViewState state;
     bool wants_image = false;
-    bool is_sent_one = false;  ///< which has not left yet
+    bool is_sent_one = false;  ///< an image for it is still being sent
   };
 
-  /// An image that nobody waits for any longer.
+  /// Thrown if an image is no longer needed.
   struct Superseded {};
 
-  /// Of an image at rest that its viewer has already.
+  /// Error check of an image at rest, which its viewer already has.
   struct ErrorCheck {
     Viewer viewer = 0;
     std::uint64_t sequence = 0;
@@ -88,7 +89,7 @@ class WebView {
     ShownVolume::Exactness exactness;
   };
 
-  // On the server's thread.
+  // Called on the server's thread.
 
   void join(Viewer viewer) {
     const std::lock_guard lock(mutex_);
@@ -102,7 +103,7 @@ class WebView {
     const auto found = sessions_.find(viewer);
     if (found == sessions_.end()) return;
     try {
-      // Whatever was wanted before and has not been begun, this takes its place.
+      // Replaces an earlier request that has not been started.
       found->second.state.apply(decode_view_message(text));
       found->second.wants_image = true;
     } catch (const MalformedView& error) {
@@ -122,7 +123,7 @@ class WebView {
     sessions_.erase(viewer);
   }
 
-  // On the caller's.
+  // Called on the thread of run().
 
   void say(Readiness readiness, std::string_view text, double done) {
     const std::lock_guard lock(mutex_);
@@ -150,7 +151,7 @@ class WebView {
     error_check_.reset();
     std::string reason = why;
     while (!stop_.stop_requested()) {
-      // What follows is meant for applications, which can draw by themselves.
+      // The rest of the message addresses applications, which can draw by themselves.
       reason = reason.substr(0, reason.find(';'));
       logging::log(logging::Level::warn, "the render nodes are gone ({}); reading the volume again", reason);
       say(Readiness::lost,
@@ -174,7 +175,7 @@ class WebView {
     something_new_.wait_for(lock, stop_, a_while, [] { return false; });
   }
 
-  /// Whose turn it is: nobody twice before everybody once.
+  /// Returns the session whose turn it is, in round-robin order.
   std::map<Viewer, Session>::iterator next_session() {
     const auto wants = [](const auto& entry) { return entry.second.wants_image && !entry.second.is_sent_one; };
     const auto after = sessions_.upper_bound(last_);
@@ -195,7 +196,7 @@ class WebView {
         try {
           return examine();
         } catch (const compositor::RequestRefused&) {
-          return error_check_.reset();  // the image is there; what it lacks is its figures
+          return error_check_.reset();  // the image has been sent; only its figures are missing
         }
       }
       if (reads_ahead_ && !is_wanted()) {
@@ -228,7 +229,8 @@ class WebView {
     }
   }
 
-  /// While the time step of an image is read: whether the viewer wants another one by now, or nothing.
+  /// Called while the time step of an image is read: throws if the viewer has requested another time
+  /// step, or has disconnected.
   void stop_if_superseded(Viewer viewer, const ViewState& state) {
     if (stop_.stop_requested()) throw compositor::ServiceLost("stopped");
     const std::lock_guard lock(mutex_);
@@ -250,13 +252,14 @@ class WebView {
       const auto session = sessions_.find(viewer);
       if (session == sessions_.end()) return;
       session->second.state.took({drawn.image.width, drawn.image.height}, ms);
-      // Nobody waits for figures.
+      // No request has to wait for figures.
       if (!state.still() || next_session() != sessions_.end()) return;
     }
     error_check_ = {viewer, state.sequence(), Clock::now() + calm, {}, {}};
   }
 
-  /// What the ranks did for the last image, then a few of its rays each time, while nobody wants another.
+  /// Sends the figures of the ranks for the last image, then checks a few of its rays in each call, while
+  /// there are no other requests.
   void examine() {
     if (error_check_->ranks.empty()) {
       error_check_->ranks = volume_.ranks();
@@ -291,14 +294,14 @@ class WebView {
   const std::stop_token stop_;
   ShownVolume volume_;
   std::optional<ErrorCheck> error_check_;
-  bool reads_ahead_ = false;  ///< there may be more to read of the next time step
+  bool reads_ahead_ = false;  ///< whether more of the next time step may have to be read
   std::mutex mutex_;
   std::condition_variable_any something_new_;
   std::map<Viewer, Session> sessions_;
   Viewer last_ = 0;
   bool is_ready_ = false;
   std::string status_ = status_message(Readiness::loading, "loading", 0);
-  WebServer server_;  // ends first
+  WebServer server_;  // destroyed first
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy view --web`: a volume in the browsers of whoever has the session's secret.
+// `understudy view --web`: displays a volume in the browsers of everybody who has the session's secret.
 #pragma once
 
 #include <stop_token>
@@ -13,12 +13,12 @@ namespace understudy::launcher {
 
 struct WebAddress {
   std::string host = "127.0.0.1";
-  int port = 0;  ///< 0: any
+  int port = 0;  ///< 0: any free port
 };
 
-/// Prints the link, loads the volume and draws for all viewers, one image at a time, until `stop` is
-/// requested. A service that is lost is made again, for as long as it takes. Throws what keeps the volume from
-/// being loaded the first time, and std::runtime_error where the address cannot be listened on.
+/// Prints the link, loads the volume and renders for all viewers, one image at a time, until `stop` is
+/// requested. If the service is lost, reconnects for as long as necessary. Throws if the volume cannot be
+/// loaded the first time, and std::runtime_error if it cannot listen on the address.
 void show_on_web(const FileScene& scene, const ServiceMaker& make, const RankMemory& memory,
                  const std::stop_token& stop, const WebAddress& address);
 

@@ -23,7 +23,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// After the last move, the image at rest is drawn.
+/// Time after the last move until the image at rest is rendered.
 constexpr std::chrono::milliseconds rest{150};
 constexpr int wait_ms = 50;
 constexpr double wheel_step = 1.15;
@@ -35,13 +35,13 @@ constexpr double key_step = 0.1;
                   SDL_GetError()));
 }
 
-/// SDL for as long as there is a window.
+/// Initializes SDL, and shuts it down.
 struct Video {
   Video() {
-    // OpenGL, if there is any, is not needed to show an image.
+    // An image can be shown without OpenGL, even where it is available.
     SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
     SDL_SetHint(SDL_HINT_RENDER_DRIVER, "software");
-    // Signals that ask for the end are not SDL's.
+    // SDL must not handle termination signals.
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
     if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) fail("no display is available for a window");
   }
@@ -114,7 +114,7 @@ class Window {
   void play(int frame) {
     ViewMessage message;
     message.still = frame + 1 == script_.frames;
-    // Of the frame's number alone: after nodes were lost it is drawn again.
+    // Depends on the frame's number alone, because a frame is rendered again after nodes were lost.
     message.camera = ViewCamera{volume_.scene().image.camera, {}};
     message.camera->orbit.azimuth += frame * script_.orbit;
     if (plays_) message.time_step = step_from(volume_.scene().time_step, frame);
@@ -164,7 +164,7 @@ class Window {
     due_ = true;
   }
 
-  /// After the last time step comes the first.
+  /// The first time step follows the last one.
   int step_from(int step, int steps) const {
     const auto count = int(volume_.scene().series.size());
     return ((step + steps) % count + count) % count;
@@ -174,7 +174,7 @@ class Window {
 
   ShownVolume::Drawn draw() {
     const Clock::time_point start = Clock::now();
-    const ViewState state = state_;  // what is heard while its step is read is of the next image
+    const ViewState state = state_;  // input that arrives while its time step is read belongs to the next image
     ShownVolume::Drawn drawn =
         volume_.draw(state, [&](const std::vector<compositor::RankLoad>& ranks) { go_on_loading(ranks); });
     show(drawn.image);
@@ -186,7 +186,7 @@ class Window {
   }
 
   void show(const RgbImage& image) {
-    // A copy that SDL may write to is not needed: it only reads.
+    // No copy is needed: SDL only reads the pixels.
     auto* pixels = const_cast<std::uint8_t*>(image.rgb.data());
     const std::unique_ptr<SDL_Surface, void (*)(SDL_Surface*)> from(
         SDL_CreateRGBSurfaceWithFormatFrom(pixels, image.width, image.height, 24, 3 * image.width,
@@ -252,7 +252,7 @@ class Window {
         return;
     }
     if (!message.still) moved_ = Clock::now();
-    // Of the image before, as it was shown.
+    // The time of the previous image.
     if (last_ms_) message.took_ms = std::exchange(last_ms_, std::nullopt);
     state_.apply(message);
     due_ = true;
@@ -334,11 +334,11 @@ class Window {
   ViewState state_;
   std::unique_ptr<SDL_Window, void (*)(SDL_Window*)> window_;
   bool over_ = false;
-  bool due_ = true;  // an image
+  bool due_ = true;  // whether an image has to be rendered
   bool reads_ahead_ = false;
   Clock::time_point moved_{};
   double drawn_ms_ = 0;
-  std::optional<double> last_ms_;  // of the last image, until it is told
+  std::optional<double> last_ms_;  // of the last image, until it has been reported
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy view` without `--web`: a volume in a window of this machine, by SDL and without OpenGL.
+// `understudy view` without `--web`: displays a volume in a window on this machine, by SDL and without OpenGL.
 #pragma once
 
 #include <stop_token>
@@ -12,15 +12,15 @@
 namespace understudy::launcher {
 
 struct WindowScript {
-  int frames = 0;      ///< then the window closes; 0: when it is closed by hand
+  int frames = 0;      ///< number of frames, after which the window closes; 0: until the user closes it
   double orbit = 0;    ///< degrees of azimuth from one frame to the next
   bool plays = false;  ///< each frame shows the next time step
-  std::string save;    ///< the last frame, as PNG
+  std::string save;    ///< PNG file for the last frame
 };
 
-/// Until the window is closed, the script is over or `stop` is requested. A service that is lost is made again,
-/// and the window's title says so meanwhile. Throws std::runtime_error where there can be no window, and what
-/// keeps the volume from being loaded the first time.
+/// Runs until the window is closed, the script is over or `stop` is requested. If the service is lost,
+/// reconnects, which the window's title shows. Throws std::runtime_error if no window can be opened, and
+/// whatever prevents the volume from being loaded the first time.
 void show_in_window(const FileScene& scene, const ServiceMaker& make, const RankMemory& memory,
                     const std::stop_token& stop, const WindowScript& script);
 

@@ -19,11 +19,11 @@ namespace viewer {
 
 namespace {
 
-// Memory grows with what really arrives, so a small file that claims to be huge costs nothing.
+// Memory grows with the bytes that are actually read, so a small file that claims to be huge costs nothing.
 constexpr std::int64_t step_bytes = std::int64_t{64} << 20;
 
-/// Fills from the file's current position; returns the bytes read, fewer only at its end. Throws on a damaged
-/// file.
+/// Reads from the file's current position; returns the number of bytes, fewer than requested only at the end of
+/// the file. Throws if the file is damaged.
 using Read = std::function<std::int64_t(std::byte* destination, std::int64_t count)>;
 
 [[noreturn]] void throw_unreadable(const std::string& path, const std::string& reason) {
@@ -89,7 +89,7 @@ std::vector<std::byte> read_bytes(const std::string& path, std::int64_t offset, 
   const bool compressed = has_extension(path, ".gz");
   const std::int64_t expected = offset + count;
   if (!compressed) {
-    // The size is known without reading: say what is wrong before gigabytes are read.
+    // The size is known without reading: report errors before gigabytes are read.
     std::error_code no_size;
     const auto size = std::filesystem::file_size(path, no_size);
     if (!no_size) {

@@ -38,7 +38,8 @@ void widen(Volume& volume, double slope, double intercept) {
   volume.type = ScalarType::f32;
 }
 
-/// Voxels as the file has them where the viewer knows their type and the file does not scale them.
+/// Keeps the voxels' type if the viewer supports it and the file does not scale them;
+/// otherwise converts them to f32.
 void give_type(Volume& volume, const nifti_image& image, double slope, double intercept,
                const std::string& path) {
   switch (image.datatype) {
@@ -89,7 +90,7 @@ bool is_nifti(const std::string& path) {
 }
 
 Volume load_nifti(const std::string& path) {
-  nifti_set_debug_level(0);  // its messages would stand beside ours
+  nifti_set_debug_level(0);  // suppresses its own messages
   const std::unique_ptr<nifti_image, FreeImage> image(nifti_image_read(path.c_str(), 0));
   if (!image || !image->iname)
     throw Error(
@@ -107,7 +108,7 @@ Volume load_nifti(const std::string& path) {
   volume_bytes(volume.size, ScalarType::f32, path);
   const std::int64_t bytes = volume.size[0] * volume.size[1] * volume.size[2] * image->nbyper;
   const std::int64_t offset = std::max<std::int64_t>(image->iname_offset, 0);
-  // niftiio's own reader turns NaN into 0 silently; ours keeps them to be counted.
+  // niftiio's own reader silently replaces NaN by 0; this one keeps NaN voxels, so that they are counted.
   volume.voxels = read_bytes(image->iname, offset, bytes, Remainder::allowed,
                              fmt::format("the header of {} requires {} voxels of {} bytes; get the file again",
                                          path, text_of(volume.size), image->nbyper));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// NIfTI-1 volumes (.nii, .hdr/.img, each also .gz); the header is read by niftiio, the voxels by us.
+// Reads NIfTI-1 volumes (.nii, .hdr/.img, each also .gz): the header with niftiio, the voxels directly.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace viewer {
 
-/// By the name: .nii .hdr .img, each also with .gz.
+/// Detected by name: .nii .hdr .img, each also with .gz.
 bool is_nifti(const std::string& path);
 
-/// The first volume of a series. Stored slope and intercept are applied; types other than the five drawn become
-/// f32.
+/// Reads the first volume of a series and applies the stored slope and intercept. Types other than the five
+/// of ScalarType become f32.
 Volume load_nifti(const std::string& path);
 
 }  // namespace viewer

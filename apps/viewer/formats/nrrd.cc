@@ -26,7 +26,7 @@ struct FreeIoState {
 };
 using NrrdPointer = std::unique_ptr<Nrrd, FreeNrrd>;
 
-// teem piles up one line per call level; the innermost, the first, says what is wrong with the file.
+// teem reports one line per call level; the innermost one, which is last, says what is wrong with the file.
 std::string teem_message() {
   const std::unique_ptr<char, decltype(&std::free)> text(biffGetDone(NRRD), &std::free);
   std::string lines = text ? text.get() : "unknown error";
@@ -80,7 +80,7 @@ bool is_nrrd(const std::string& path) {
 }
 
 Volume load_nrrd(const std::string& path) {
-  // The header alone first: what it claims is checked before teem allocates anything for it.
+  // Reads the header first: its sizes are checked before teem allocates memory for them.
   const NrrdPointer header = load(path, true);
   volume_bytes(axes_of(*header, path).size, ScalarType::f32, path);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// NRRD volumes (attached or detached header, raw, ascii or gzip encoding), read by teem.
+// Reads NRRD volumes with teem (attached or detached header, raw, ascii or gzip encoding).
 #pragma once
 
 #include <string>
@@ -8,10 +8,11 @@
 
 namespace viewer {
 
-/// By the magic at the start of the file.
+/// Detected by the magic number at the start of the file.
 bool is_nrrd(const std::string& path);
 
-/// A scalar volume of three axes (axes of length 1 do not count). 32- and 64-bit types become f32.
+/// Reads a scalar volume with three axes (axes of length 1 do not count). 32-bit integers
+/// and 64-bit types become f32.
 Volume load_nrrd(const std::string& path);
 
 }  // namespace viewer

@@ -21,7 +21,7 @@ constexpr std::pair<std::string_view, ScalarType> long_type_names[] = {{"uint8",
                                                                        {"int16", ScalarType::i16},
                                                                        {"float32", ScalarType::f32}};
 
-// Wrong sizes are usually a wrong type: say which type the file's length speaks for.
+// A wrong file size is usually caused by a wrong type: suggest the type that fits the file's length.
 std::string advice_for(const std::string& path, const VolumeSize& size, ScalarType type) {
   std::string advice =
       fmt::format("expected {} voxels of type {}; check --size and --type", text_of(size), name_of(type));
@@ -36,7 +36,7 @@ std::string advice_for(const std::string& path, const VolumeSize& size, ScalarTy
   return advice;
 }
 
-// "256x256x110"
+// Parses, for example, "256x256x110".
 std::optional<VolumeSize> size_in_word(std::string_view word) {
   VolumeSize size{};
   const char* at = word.data();

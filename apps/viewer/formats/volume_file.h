@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a volume from a file, whatever its format.
+// Reads a volume from a file of any supported format.
 //
-// NRRD is known by its first bytes, NIfTI by its name (.nii .nii.gz .hdr .img); everything else is raw voxels,
-// whose size and type come from the caller or from the name (engine.256x256x110, skull_256x256x256_uint8.raw).
-// Raw files named
-// *.gz are decompressed on the way.
+// NRRD is detected by its first bytes, NIfTI by its name (.nii .hdr .img, each also with .gz); every other file
+// is raw voxels, whose size and type come from the caller or from the name (engine.256x256x110,
+// skull_256x256x256_uint8.raw). Raw files named *.gz are decompressed.
 #pragma once
 
 #include <optional>
@@ -14,7 +13,7 @@
 
 namespace viewer {
 
-/// What the user says about the file; it wins over what the file says itself.
+/// What the user specifies about the file; takes precedence over the file itself.
 struct VolumeHints {
   std::optional<VolumeSize> size;  ///< raw files only
   std::optional<ScalarType> type;  ///< raw files only

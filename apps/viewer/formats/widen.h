@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Voxel types that the viewer does not draw directly (32- and 64-bit integers, doubles) become floats.
+// Converts voxel types that the viewer does not draw directly (32- and 64-bit integers, doubles) to floats.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace viewer {
 
-/// Each T in `voxels` as value * slope + intercept in float.
+/// Converts each T in `voxels` to value * slope + intercept, in float.
 template <typename T>
 std::vector<std::byte> as_float32(const std::vector<std::byte>& voxels, double slope = 1,
                                   double intercept = 0) {

@@ -7,7 +7,8 @@ namespace viewer {
 
 namespace {
 
-// Farther from the origin than anything drawn: the box reaches 0.5, frame and axes a little more.
+// Larger than the distance of anything drawn from the origin: the box reaches 0.5,
+// frame and axes a little more.
 constexpr double scene_radius = 0.75;
 
 Mat4 orientation(const Camera& camera) {

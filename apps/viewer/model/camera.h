@@ -2,7 +2,7 @@
 // A camera that turns around the volume.
 //
 // Object space: the volume's box is centred at the origin, its diagonal is 1 long, z is up.
-// Azimuth 0 looks along +y; it turns the eye anticlockwise seen from above. Elevation lifts the eye.
+// Azimuth 0 looks along +y; it moves the eye anticlockwise seen from above. Elevation raises the eye.
 #pragma once
 
 #include "apps/viewer/model/vector_math.h"
@@ -25,17 +25,17 @@ struct Matrices {
   Mat4 projection;
 };
 
-/// `width` and `height` of the window in pixels. The orthographic image has the size of the perspective one
-/// at the origin.
+/// `width` and `height` are those of the window, in pixels. The orthographic image has the size of the
+/// perspective one at the origin.
 Matrices matrices_of(const Camera& camera, int width, int height);
 
-/// The direction the camera looks in, in object space, length 1.
+/// The direction of view in object space, of length 1.
 Vec3 view_direction(const Camera& camera);
 
 /// Mouse drag: `right` and `down` in pixels.
 void rotate(Camera& camera, double right, double down);
 
-/// Brings the eye nearer by `steps` wheel clicks (negative: away).
+/// Moves the eye nearer by `steps` wheel clicks (negative: away).
 void zoom(Camera& camera, double steps);
 
 }  // namespace viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the viewer says, and how it exits, when it cannot go on.
+// The viewer's error messages and exit statuses.
 #pragma once
 
 #include <stdexcept>
@@ -12,7 +12,7 @@ enum class ExitCode {
   success = 0,
   bad_file = 1,          ///< a volume could not be read or does not fit, or an output could not be written
   bad_command_line = 2,  ///< options missing, unknown or out of range
-  no_opengl = 3,         ///< no display, no context, or OpenGL itself refused
+  no_opengl = 3,         ///< no display, no context, or OpenGL reported an error
 };
 
 /// Message for the user: what went wrong, where, and what to do next.

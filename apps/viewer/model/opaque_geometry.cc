@@ -7,7 +7,7 @@ namespace viewer {
 
 namespace {
 
-// The frame stands off the box, so that its lines and the slices' rims never fight for the same depth.
+// The frame is slightly larger than the box, so that its lines and the slices' edges never have the same depth.
 constexpr double frame_gap = 0.004;
 constexpr Vec3f frame_colour = {0.6F, 0.6F, 0.6F};
 
@@ -34,7 +34,8 @@ void add_frame(const Box& box, OpaqueGeometry& geometry) {
     }
 }
 
-// Light from a fixed side, worked into the colours: the image stays the same in every drawing mode.
+// The light comes from a fixed direction and is included in the colours, so that all
+// drawing modes show the same.
 void add_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& colour, OpaqueGeometry& geometry) {
   const Vec3 light = normalised({0.4, -0.7, 0.6});
   const Vec3 normal = normalised(cross(b - a, c - a));
@@ -85,7 +86,7 @@ void add_ball(const Box& box, OpaqueGeometry& geometry) {
   const Vec3 colour = {0.9, 0.6, 0.1};
   for (int ring = 0; ring < ball_rings; ++ring)
     for (int side = 0; side < 2 * ball_rings; ++side) {
-      // At the poles one of the two triangles is none.
+      // At the poles, one of the two triangles is degenerate.
       if (ring + 1 < ball_rings)
         add_triangle(at(ring, side), at(ring + 1, side), at(ring + 1, side + 1), colour, geometry);
       if (ring > 0) add_triangle(at(ring, side), at(ring + 1, side + 1), at(ring, side + 1), colour, geometry);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn before the volume, solid and with depth test: the box's frame and three axis arrows.
+// Solid geometry beside the volume, drawn with depth test: the box's frame, three axis arrows, and a ball.
 #pragma once
 
 #include <vector>
@@ -18,14 +18,14 @@ struct OpaqueGeometry {
   std::vector<ColouredVertex> triangles;  ///< three vertices each
 };
 
-/// Frame: 12 grey lines just outside the box. Axes: arrows from the box's lowest corner, x red, y green, z
-/// blue.
+/// Frame: 12 grey lines just outside the box. Axes: arrows from the box's lowest corner;
+/// x is red, y green, z blue.
 OpaqueGeometry frame_and_axes(const Box& box);
 
-/// A ball that is partly within the box.
+/// Adds a ball that is partly within the box.
 void add_ball(const Box& box, OpaqueGeometry& geometry);
 
-/// Two triangles over the whole image, to be drawn with matrices of one.
+/// Two triangles that cover the whole image, to be drawn with identity matrices.
 OpaqueGeometry whole_image(const Vec3f& colour);
 
 }  // namespace viewer

@@ -7,8 +7,8 @@ namespace viewer {
 
 namespace {
 
-// Corner i has the upper end of axis a when bit a of i is set. Each edge joins two corners that differ in one
-// bit.
+// Corner i is at the upper end of axis a if bit a of i is set. Each edge joins two
+// corners that differ in one bit.
 struct Edge {
   int from, to;
 };
@@ -20,7 +20,7 @@ Vec3 corner(const Box& box, int index) {
   return scale(signs, box.edges);
 }
 
-// Two directions that span the plane.
+// Returns two directions that span the plane.
 std::array<Vec3, 2> plane_basis(const Vec3& normal) {
   const Vec3 helper = std::abs(normal[2]) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
   const Vec3 u = normalised(cross(helper, normal));
@@ -54,7 +54,7 @@ SliceStack cut_slices(const Box& box, const Vec3& direction, int across_diagonal
 
     std::vector<Vec3> points;
     for (const Edge& edge : box_edges) {
-      // Half open, so that a plane through a corner meets each of its edges consistently.
+      // Half-open, so that a plane through a corner meets each of its edges consistently.
       if ((distance[edge.from] < 0) == (distance[edge.to] < 0)) continue;
       const double t = distance[edge.from] / (distance[edge.from] - distance[edge.to]);
       const Vec3 a = corner(box, edge.from), b = corner(box, edge.to);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// View-aligned slices: planes across the line of sight, cut with the volume's box (Cabral, Cam and Foran 1994;
-// the polygons are found edge by edge as in Rezk-Salama and Kolb 2005).
+// View-aligned slices: planes perpendicular to the line of sight, intersected with the volume's box (Cabral,
+// Cam and Foran 1994; the polygons are found edge by edge as in Rezk-Salama and Kolb 2005).
 //
-// The planes are equally spaced and lie symmetrically about the box's centre. They span the sphere around the
-// box, so their spacing, and with it the opacity correction, is the same from every side; planes that miss the
-// box are left out.
+// The planes are equally spaced and symmetric about the box's centre. They span the bounding sphere of the
+// box, so their spacing, and with it the opacity correction, is the same from every direction; planes that
+// miss the box are omitted.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace viewer {
 
 inline constexpr int max_slices = 1 << 16;
 
-/// The volume in object space: box edges with a diagonal of 1 in all, centred at the origin.
+/// The volume in object space: a box with a diagonal of length 1, centred at the origin.
 struct Box {
   Vec3 edges;
   double finest_voxel_edge;  ///< the reference distance of opacities
@@ -43,10 +43,12 @@ struct SliceStack {
   std::vector<SliceVertex> vertices;
 };
 
-/// Slices that span the bounding sphere: `requested`, or enough for one per finest voxel edge when it is 0.
+/// Returns the number of slices that span the bounding sphere: `requested`, or one per
+/// finest voxel edge if it is 0.
 int slices_across_diagonal(const Box& box, int requested);
 
-/// `across_diagonal` planes span the bounding sphere; `direction` is the direction of view, length 1.
+/// Cuts the box by `across_diagonal` planes that span its bounding sphere; `direction` is the
+/// direction of view, of length 1.
 SliceStack cut_slices(const Box& box, const Vec3& direction, int across_diagonal);
 
 }  // namespace viewer

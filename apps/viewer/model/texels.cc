@@ -42,7 +42,7 @@ void measure(const std::vector<std::byte>& voxels, Texels& texels) {
   }
 }
 
-// A volume of one value has no range; it becomes 0 throughout.
+// A constant volume has no range; all its texels become 0.
 double per_range(const Texels& texels) {
   const double range = texels.value_at_1 - texels.value_at_0;
   return range > 0 ? 1.0 / range : 0.0;

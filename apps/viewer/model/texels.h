@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Voxel values as a texture takes them: normalised to [0,1].
+// Converts voxel values to texels: normalised to [0,1].
 //
-// u8 stays as it is (value/255). Other integers become 16-bit, the value range of the volume mapped to [0,1].
-// f32 is scaled to [0,1] by its finite range; values that are not finite become 0 and are counted, to be shown
-// as empty.
+// u8 is unchanged (value/255). Other integers become 16-bit, with the volume's value range mapped to
+// [0,1]. f32 is scaled to [0,1] by its finite range; values that are not finite become 0 and are
+// counted, to be shown as empty.
 #pragma once
 
 #include "apps/viewer/model/volume.h"
@@ -19,12 +19,12 @@ struct Texels {
   std::vector<std::byte> data;  ///< x fastest, no padding
   double value_at_0 = 0;        ///< the voxel value that became 0
   double value_at_1 = 255;      ///< the voxel value that became 1
-  double lowest = 0;            ///< range of finite values present
+  double lowest = 0;            ///< range of the finite values
   double highest = 0;
   std::int64_t not_finite = 0;  ///< NaN and infinite voxels
 };
 
-/// Takes the voxels over (u8 is not copied).
+/// Consumes the volume (u8 voxels are not copied).
 Texels to_texels(Volume volume);
 
 /// Texel `index` in [0,1].

@@ -9,8 +9,8 @@ namespace viewer {
 
 namespace {
 
-// Made for the 8-bit engine block CT: casting near 0.5 to 0.6, denser inserts above 0.75. The dark low end of
-// the casting's ramp shades its rim, where voxels are half air.
+// For the 8-bit CT of an engine block: casting near 0.5 to 0.6, denser inserts above 0.75. The dark lower end
+// of the casting's ramp shades its edge, where voxels are half air.
 constexpr ControlPoint engine[] = {
     {0.00, 0.20, 0.14, 0.10, 0.000}, {0.26, 0.20, 0.14, 0.10, 0.000}, {0.40, 0.42, 0.31, 0.22, 0.035},
     {0.52, 0.86, 0.70, 0.50, 0.080}, {0.60, 0.95, 0.86, 0.70, 0.060}, {0.66, 0.75, 0.35, 0.15, 0.050},
@@ -22,14 +22,14 @@ constexpr ControlPoint bone[] = {
     {0.42, 0.80, 0.50, 0.36, 0.010}, {0.52, 0.92, 0.84, 0.70, 0.100}, {0.75, 1.00, 0.97, 0.90, 0.500},
     {1.00, 1.00, 1.00, 1.00, 0.850},
 };
-// No voxel is empty: fog everywhere, thicker with the value.
+// No voxel is empty: fog everywhere, denser with increasing value.
 constexpr ControlPoint dense[] = {
     {0.00, 0.30, 0.40, 0.70, 0.008},
     {0.30, 0.45, 0.55, 0.75, 0.016},
     {0.60, 0.85, 0.80, 0.65, 0.040},
     {1.00, 1.00, 0.95, 0.85, 0.100},
 };
-// All but the highest values is empty.
+// All but the highest values are empty.
 constexpr ControlPoint sparse[] = {
     {0.00, 0.20, 0.60, 0.90, 0.000}, {0.70, 0.20, 0.60, 0.90, 0.000}, {0.76, 0.35, 0.75, 0.95, 0.200},
     {0.90, 0.85, 0.95, 1.00, 0.600}, {1.00, 1.00, 1.00, 1.00, 0.900},
@@ -87,7 +87,7 @@ Table make_table(const Preset& preset, double exponent, bool zero_is_empty) {
   Table table;
   for (std::size_t i = 0; i < table.size(); ++i) {
     const ControlPoint p = sample(preset.points, static_cast<double>(i) / 255.0);
-    // Not 1 - pow(1 - a, e): that loses small opacities.
+    // Not 1 - pow(1 - a, e), which loses small opacities.
     const double opacity = -std::expm1(exponent * std::log1p(-p.opacity));
     table[i] = {to_byte(p.red), to_byte(p.green), to_byte(p.blue), to_byte(opacity)};
   }

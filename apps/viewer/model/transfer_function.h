@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Transfer functions: what colour and opacity a voxel value stands for.
+// Transfer functions: colour and opacity by voxel value.
 //
-// A preset is a piecewise linear function of the texel value in [0,1]. Its opacity is meant per reference
-// distance, the finest voxel edge; slices that lie closer or farther apart correct it: a' = 1 - (1 -
-// a)^(spacing / reference). Colours are not premultiplied, and go on where the opacity is 0, so that
-// interpolation draws no dark rim.
+// A preset is a piecewise linear function of the texel value in [0,1]. Its opacity is per reference
+// distance, which is the finest voxel edge. For slices at another spacing it is corrected: a' = 1 - (1 -
+// a)^(spacing / reference). Colours are not premultiplied, and continue where the opacity is 0, so that
+// interpolation produces no dark rim.
 #pragma once
 
 #include <array>
@@ -26,10 +26,10 @@ struct Preset {
   std::span<const ControlPoint> points;
 };
 
-/// In the order of the keys 1, 2, ...
+/// Presets in the order of the keys 1, 2, ...
 std::span<const Preset> presets();
 
-/// By name or by number ("1" is the first); nullptr when there is none.
+/// Finds a preset by name or number ("1" is the first); nullptr if there is none.
 const Preset* find_preset(std::string_view name_or_number);
 
 using Rgba8 = std::array<std::uint8_t, 4>;
@@ -37,12 +37,12 @@ using Rgba8 = std::array<std::uint8_t, 4>;
 /// Entry i is the colour of texel value i/255; values between two entries are interpolated linearly.
 using Table = std::array<Rgba8, 256>;
 
-/// The preset with the opacity correction applied, in 8 bits as it goes to OpenGL.
-/// `exponent` is slice spacing / reference distance. `zero_is_empty`: value 0 stands for "no value" and is
-/// transparent.
+/// Returns the preset with the opacity correction applied, in 8 bits as passed to OpenGL.
+/// `exponent` is slice spacing / reference distance. `zero_is_empty`: value 0 represents "no
+/// value" and is transparent.
 Table make_table(const Preset& preset, double exponent, bool zero_is_empty);
 
-/// The table at texel value `value` in [0,1], interpolated linearly and rounded.
+/// Returns the table at texel value `value` in [0,1], interpolated linearly and rounded.
 Rgba8 look_up(const Table& table, double value);
 
 }  // namespace viewer

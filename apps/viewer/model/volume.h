@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scalar volume as it stands in a file.
+// A scalar volume as stored in a file.
 #pragma once
 
 #include <array>
@@ -23,11 +23,11 @@ std::size_t bytes_per_voxel(ScalarType type);
 
 using VolumeSize = std::array<std::int64_t, 3>;
 
-/// No volume with a longer edge or more bytes is read: beyond what any 3-D texture holds.
+/// Volumes with longer edges or more bytes are rejected: no 3-D texture could hold them.
 inline constexpr std::int64_t max_edge_voxels = 1 << 16;
 inline constexpr std::int64_t max_volume_bytes = std::int64_t{1} << 38;
 
-/// Distances between voxels are believed in this range, from atoms to galaxies: beyond it squares overflow.
+/// Valid distances between voxels, from atoms to galaxies; beyond this range, squares overflow.
 inline constexpr double min_spacing = 1e-30;
 inline constexpr double max_spacing = 1e30;
 
@@ -39,10 +39,11 @@ struct Volume {
   std::vector<std::byte> voxels;  ///< x fastest, byte order of this machine
 };
 
-/// "256x256x110"
+/// For example "256x256x110".
 std::string text_of(const VolumeSize& size);
 
-/// Bytes of a volume. Throws Error when an edge is below 1 or a limit above is passed; `where` names the file.
+/// Returns the bytes of a volume. Throws Error if an edge is below 1 or a limit above is
+/// exceeded; `where` names the file.
 std::int64_t volume_bytes(const VolumeSize& size, ScalarType type, const std::string& where);
 
 }  // namespace viewer

@@ -12,14 +12,14 @@ namespace viewer {
 
 namespace {
 
-constexpr std::int64_t brick_edge = 64;  ///< texels of a brick's texture, at most
-constexpr double far_away = 1e6;         ///< where an orthographic camera's eye may be thought to be
+constexpr std::int64_t brick_edge = 64;  ///< maximum edge of a brick's texture, in texels
+constexpr double far_away = 1e6;         ///< distance of the assumed eye of an orthographic camera
 
-/// The texels of one brick along one axis, and the part of the volume that it shows: between texel centres that
-/// it shares with its neighbours, or up to the volume's edge.
+/// The texels of one brick along one axis, and the part of the volume that it shows: between the texel centres
+/// that it shares with its neighbours, or up to the volume's edge.
 struct Interval {
   std::int64_t first, texels;
-  double low, high;  ///< of the volume, [0,1]
+  double low, high;  ///< part of the volume, in [0,1]
 };
 
 std::vector<Interval> cut_axis(std::int64_t size) {
@@ -55,7 +55,7 @@ std::vector<std::byte> texels_of(const Texels& texels, const std::array<Interval
   return part;
 }
 
-/// The convex polygon's part with sign * (texture[axis] - bound) >= 0.
+/// Returns the part of a convex polygon with sign * (texture[axis] - bound) >= 0.
 std::vector<SliceVertex> cut(const std::vector<SliceVertex>& polygon, std::size_t axis, float bound,
                              float sign) {
   std::vector<SliceVertex> kept;
@@ -76,7 +76,7 @@ std::vector<SliceVertex> cut(const std::vector<SliceVertex>& polygon, std::size_
   return kept;
 }
 
-/// The part of all slices that lies in the brick, with the brick's own texture coordinates.
+/// Returns the part of all slices that is inside the brick, with the brick's own texture coordinates.
 SliceStack part_of(const SliceStack& stack, const std::array<Interval, 3>& along, const VolumeSize& size) {
   SliceStack part;
   for (const Slice& slice : stack.slices) {
@@ -101,7 +101,8 @@ SliceStack part_of(const SliceStack& stack, const std::array<Interval, 3>& along
   return part;
 }
 
-/// The eye in object space; far away against the direction of view in orthographic images.
+/// Returns the eye in object space; for orthographic images, a point far away opposite
+/// to the direction of view.
 Vec3 eye_of(const Matrices& matrices) {
   const Mat4& m = matrices.modelview;
   const double squared_scale = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
@@ -139,7 +140,8 @@ class BricksMode : public Mode {
   }
 
   void draw_slices(const SliceStack& stack, const Matrices& matrices) override {
-    // Bricks of a grid hide each other along each axis by their distance from the eye along that axis.
+    // In a grid, a brick hides only bricks that are no nearer to the eye along any axis, so the sum of these
+    // distances gives a visibility order.
     const Vec3 eye = eye_of(matrices);
     const auto distance = [&](const Brick& brick) {
       double sum = 0;

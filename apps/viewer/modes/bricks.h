@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// As the table mode, in many 3-D textures of at most 64 texels an edge that share their outer texels with their
-// neighbours: the bricks are drawn one after the other in visibility order, each with its part of all slices.
+// Like the table mode, but in many 3-D textures with edges of at most 64 texels, which share their
+// outer texels with their neighbours: bricks are drawn one after another in visibility order, each
+// with its part of all slices.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the two compatibility-profile modes share: matrix stacks and opaque geometry in immediate mode.
+// Shared by the compatibility-profile modes: matrix stacks, and opaque geometry in immediate mode.
 #pragma once
 
 #include "apps/viewer/model/camera.h"
@@ -9,7 +9,7 @@ namespace viewer {
 
 void load_matrices(const Matrices& matrices);
 
-/// Fixed function, without textures or program; loads the matrices itself.
+/// Draws with fixed function, without textures or program; also loads the matrices.
 void draw_opaque_immediate(const OpaqueGeometry& geometry, const Matrices& matrices);
 
 }  // namespace viewer

@@ -21,7 +21,7 @@ void main() {
 }
 )";
 
-// Value i/255 falls on the centre of table texel i.
+// Value i/255 maps to the centre of table texel i.
 constexpr const char* slice_fragment_source = R"(#version 330 core
 uniform sampler3D volume;
 uniform sampler1D table;
@@ -50,7 +50,7 @@ out vec4 colour;
 void main() { colour = vec4(solid_colour, 1.0); }
 )";
 
-// A vertex buffer that is filled anew for every draw: two vec3 per vertex.
+// A vertex buffer that is refilled for every draw: two vec3 per vertex.
 class Stream {
  public:
   Stream(std::size_t stride, std::size_t first_offset, std::size_t second_offset)
@@ -83,7 +83,7 @@ class Stream {
   Buffer buffer_;
 };
 
-// One list of triangles for all slices, so that one call draws them.
+// Makes one list of triangles for all slices, so that one call draws them.
 std::vector<SliceVertex> triangles_of(const SliceStack& stack) {
   std::vector<SliceVertex> triangles;
   triangles.reserve(stack.vertices.size() * 3);

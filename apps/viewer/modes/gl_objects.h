@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenGL object names that delete themselves. Destroy them with their context current.
+// Owners of OpenGL objects, which they delete on destruction. Destroy them while their context is current.
 #pragma once
 
 #include <GL/glew.h>
@@ -8,7 +8,7 @@
 
 namespace viewer {
 
-/// `Delete` is a stateless functor taking a GLuint.
+/// `Delete` is a stateless functor that takes a GLuint.
 template <typename Delete>
 class GlObject {
  public:

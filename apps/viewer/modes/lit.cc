@@ -9,7 +9,7 @@ namespace viewer {
 
 namespace {
 
-// Central differences over one voxel; where the field is flat there is no surface, and no shade.
+// Central differences over one voxel. Where the field is flat, there is no surface and no shading.
 constexpr const char* lit_fragment_source = R"(#version 120
 uniform sampler3D volume;
 uniform sampler1D table;

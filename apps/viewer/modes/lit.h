@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// As the table mode, with the light of one direction on the surfaces that the field's gradient tells of (Levoy
-// 1988): seven samples a fragment.
+// Like the table mode, with directional light on the surfaces that the field's gradient indicates (Levoy 1988):
+// seven samples per fragment.
 #pragma once
 
 #include <memory>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A way to draw a volume's slices with OpenGL; one file per way.
+// A method to draw a volume's slices with OpenGL; one file per method.
 //
 //   rgba   colours looked up per voxel on the CPU, RGBA8 texture, fixed function, immediate mode
 //   table  scalar texture, colours looked up per fragment in a 1-D texture (GLSL 1.20), vertex arrays
 //   core   the same look-up in an OpenGL 3.3 core profile, all slices in one batch from a vertex buffer
-//   time   as table, with a new time step in the texture every frame
-//   bricks as table, with many small textures in visibility order
-//   lit    as table, with directional light on the field's surfaces
-//   preint pre-integrated segments: two samples and a 2-D table a fragment
+//   time   like table, with a new time step in the texture every frame
+//   bricks like table, with many small textures in visibility order
+//   lit    like table, with directional light on the field's surfaces
+//   preint pre-integrated segments: two samples and a 2-D look-up per fragment
 //   stacks three stacks of 2-D textures instead of one 3-D texture
 #pragma once
 
@@ -29,14 +29,14 @@ enum class ModeKind { rgba, table, core, time, bricks, lit, preint, stacks };
 std::string_view name_of(ModeKind kind);
 std::optional<ModeKind> mode_named(std::string_view name);
 
-/// What the time mode does between two frames.
+/// What changes between two frames of the time mode.
 enum class TimeStep {
-  whole,  ///< every texel changes, all are uploaded
+  whole,  ///< all texels change and are uploaded
   part,   ///< texels in the middle change, and only their box is uploaded
   again   ///< texels in the middle change, but all are uploaded
 };
 
-/// Owns its OpenGL objects: made, used and destroyed with the same context current.
+/// Owns its OpenGL objects: create, use and destroy it with the same context current.
 class Mode {
  public:
   virtual ~Mode() = default;
@@ -44,19 +44,19 @@ class Mode {
   Mode(const Mode&) = delete;
   Mode& operator=(const Mode&) = delete;
 
-  /// The colours of all slices drawn from now on.
+  /// Sets the colours of all slices drawn from now on.
   virtual void set_table(const Table& table) = 0;
-  /// Before anything of a frame is drawn.
+  /// Called before anything of a frame is drawn.
   virtual void next_frame() {}
   virtual void draw_opaque(const OpaqueGeometry& geometry, const Matrices& matrices) = 0;
-  /// Blending and depth state are the caller's.
+  /// The caller sets the blending and depth state.
   virtual void draw_slices(const SliceStack& stack, const Matrices& matrices) = 0;
   /// Name of the volume texture's internal format, such as "GL_R8".
   virtual std::string_view texture_format() const = 0;
 };
 
-/// Needs a current context: 3.3 core for core, compatibility for all others. `file` names the volume in
-/// errors. Throws Error when the volume does not fit the texture limits, or OpenGL refuses.
+/// Requires a current context: 3.3 core for core, compatibility for all others. `file` names the volume in
+/// errors. Throws Error if the volume exceeds the texture limits, or OpenGL reports an error.
 std::unique_ptr<Mode> make_mode(ModeKind kind, Texels texels, const std::string& file, TimeStep step);
 
 }  // namespace viewer

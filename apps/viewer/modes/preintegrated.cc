@@ -34,10 +34,10 @@ void main() {
 }
 )";
 
-/// The mean colour and opacity between each pair of values, colours weighted by their opacity.
+/// Returns the mean colour and opacity between each pair of values; colours are weighted by their opacity.
 std::vector<Rgba8> integrate(const Table& table) {
   const std::size_t n = table.size();
-  // Sums of the entries below i: the means of all pairs are differences of these.
+  // Sums of the entries below i; the means of all pairs are computed from differences of these sums.
   std::vector<std::array<double, 4>> below(n + 1);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t channel = 0; channel < 3; ++channel)

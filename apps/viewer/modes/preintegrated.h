@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pre-integrated segments (Engel, Kraus and Ertl 2001): each fragment looks at the slice's front and back
-// coordinate, and in a 2-D table at what lies between the two values.
+// Pre-integrated segments (Engel, Kraus and Ertl 2001): each fragment samples the front and the back of the
+// slice segment, and looks up the segment's colour by these two values in a 2-D table.
 #pragma once
 
 #include <memory>

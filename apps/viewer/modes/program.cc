@@ -39,7 +39,7 @@ Program link_program(const std::string& name, const char* vertex_source, const c
        {std::pair{GL_VERTEX_SHADER, vertex_source}, std::pair{GL_FRAGMENT_SHADER, fragment_source}}) {
     const GLuint shader = compile(static_cast<GLenum>(stage), name, source);
     glAttachShader(program.name(), shader);
-    glDeleteShader(shader);  // lives on as long as the program
+    glDeleteShader(shader);  // deleted together with the program
   }
   glLinkProgram(program.name());
   GLint linked = GL_FALSE;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiles and links a GLSL program of one vertex and one fragment shader.
+// Compiles and links a GLSL program from a vertex and a fragment shader.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace viewer {
 
-/// Throws Error (no_opengl) with the compiler's log; `name` says which program.
+/// Throws Error (no_opengl) with the compiler's log; `name` identifies the program.
 Program link_program(const std::string& name, const char* vertex_source, const char* fragment_source);
 
 }  // namespace viewer

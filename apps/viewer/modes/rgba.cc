@@ -27,7 +27,7 @@ class RgbaMode : public Mode {
 
   void set_table(const Table& table) override {
     const std::vector<Rgba8> colours = classify(texels_, table);
-    texture_ = Texture();  // before the new one, so that there are never two
+    texture_ = Texture();  // freed first, so that there are never two
     texture_ = make_volume_texture(rgba_format, texels_.size, colours.data(), file_);
   }
 

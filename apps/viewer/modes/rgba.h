@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pre-classified RGBA8 texture, fixed function, one immediate-mode triangle fan per slice.
-// Keeps the texels, because another table means other colours in every voxel.
+// Pre-classified RGBA8 texture, fixed function, one immediate-mode triangle fan per slice. Keeps the texels,
+// because a new transfer function changes the colour of every voxel.
 #pragma once
 
 #include <memory>

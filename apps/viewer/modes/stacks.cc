@@ -49,7 +49,7 @@ class StacksMode : public Mode {
     const std::array<std::size_t, 3> axes = {0, 1, 2};
     const std::size_t axis = *std::max_element(axes.begin(), axes.end(), steeper);
     const std::vector<Texture>& slices = stacks_[axis];
-    // Along the direction of view lies what is farther.
+    // Slices farther along the direction of view are farther from the eye.
     const bool highest_first = (stack.normal[axis] > 0) != stack.front_to_back;
     glEnable(GL_TEXTURE_2D);
     glTexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_REPLACE);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Three stacks of 2-D textures, one per axis, colours per voxel: the stack that faces the eye is drawn, one
-// quad a slice (Cabral, Cam and Foran 1994, for hardware without 3-D textures). Fixed function, immediate mode.
+// Three stacks of 2-D textures, one per axis, with colours per voxel: the stack that faces the eye is
+// drawn, one quad per slice (Cabral, Cam and Foran 1994, for hardware without 3-D textures). Fixed
+// function, immediate mode.
 #pragma once
 
 #include <memory>

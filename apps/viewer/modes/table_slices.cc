@@ -16,7 +16,7 @@ void main() {
 }
 )";
 
-// Value i/255 falls on the centre of table texel i.
+// Value i/255 maps to the centre of table texel i.
 constexpr const char* plain_fragment_source = R"(#version 120
 uniform sampler3D volume;
 uniform sampler1D table;

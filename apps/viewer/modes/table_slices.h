@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the modes with a colour table in GLSL 1.20 share: a program that looks texels up in a table, and one
+// Shared by the modes with a colour table in GLSL 1.20: a program that looks texels up in a table, and one
 // triangle fan per slice from client vertex arrays.
 #pragma once
 
@@ -12,8 +12,8 @@ namespace viewer {
 
 class TableSlices {
  public:
-  /// Uniforms `volume` (unit 0) and `table` (unit 1); null sources: the plain look-up. `name` names the program
-  /// in errors.
+  /// Sets the uniforms `volume` (unit 0) and `table` (unit 1). Null sources: the plain look-up. `name`
+  /// identifies the program in errors.
   explicit TableSlices(const std::string& name, const char* vertex_source = nullptr,
                        const char* fragment_source = nullptr);
 

@@ -12,7 +12,7 @@ namespace viewer {
 
 namespace {
 
-constexpr int steps = 12;  ///< until the volume looks as at first
+constexpr int steps = 12;  ///< period, in time steps
 
 std::vector<std::uint8_t> bytes_of(const Texels& texels) {
   const auto count = static_cast<std::size_t>(texels.size[0] * texels.size[1] * texels.size[2]);

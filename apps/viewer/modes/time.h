@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// As the table mode, but every frame shows another time step, uploaded into the same texture: the volume, or a
-// box in its middle, brighter and darker by turns. 8 bits.
+// Like the table mode, but every frame shows another time step, uploaded into the same texture: the volume, or
+// a box in its middle, becomes brighter and darker in turn. 8 bits.
 #pragma once
 
 #include <memory>

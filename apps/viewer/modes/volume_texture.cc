@@ -59,7 +59,7 @@ Texture make_volume_texture(const VolumeTextureFormat& format, const VolumeSize&
   set_sampling(GL_TEXTURE_3D, {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R});
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
 
-  // The edges fit; whether all of it fits together only the driver knows.
+  // The edges are within the limit; only the driver can tell whether the whole texture fits.
   glTexImage3D(GL_PROXY_TEXTURE_3D, 0, format.internal_format, width, height, depth, 0, format.format,
                format.type, nullptr);
   GLint accepted_width = 0;

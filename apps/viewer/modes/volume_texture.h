@@ -15,16 +15,16 @@ struct VolumeTextureFormat {
   GLint internal_format;
   GLenum format;
   GLenum type;
-  std::string_view name;  ///< of the internal format
+  std::string_view name;  ///< name of the internal format
 };
 
-/// LUMINANCE in a compatibility profile, the RED formats in a core profile (there is no luminance there).
+/// LUMINANCE formats for compatibility profiles, RED formats for core profiles, which have no luminance.
 VolumeTextureFormat luminance_format(TexelFormat format);
 VolumeTextureFormat red_format(TexelFormat format);
 inline constexpr VolumeTextureFormat rgba_format = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, "GL_RGBA8"};
 
-/// Uploads `data`. Throws Error (bad_file), naming `file` and the limit, when the volume does not fit the
-/// driver.
+/// Uploads `data`. Throws Error (bad_file) with `file` and the limit if the volume
+/// exceeds the driver's limits.
 Texture make_volume_texture(const VolumeTextureFormat& format, const VolumeSize& size, const void* data,
                             const std::string& file);
 

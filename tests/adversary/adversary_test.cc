@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every scenario bare, under Understudy, and where the images differ bare in floats, which tells what may
-// differ: is what Understudy shows right, and is it substituted or left as its file says?
+// Draws every scenario bare, under Understudy and, if the images differ, bare in floats, which shows how far
+// they may differ. Is what Understudy shows right, and is it substituted or left as the scenario's file states?
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr int frames = 30;
 
-/// Pixels on both edges of the window: fewer than in `./run test --full`, which draws for three times as long.
+/// Pixels along both edges of the window: fewer than in `./run test --full`, which draws for three times as
+/// long.
 std::string pixels_of_an_edge() {
   const char* const asked = std::getenv("ADVERSARY_EDGE");
   return asked != nullptr ? asked : "128";
@@ -55,14 +56,14 @@ class Adversary : public testing::TestWithParam<NamedScenario> {
     fs::create_directories(folder_);
   }
 
-  /// Of `adversary run` into the folder of that name, after the words of `before`.
+  /// Runs `adversary run` into the folder `into`, with `before` in front of the command and `after` behind it.
   void draw(const std::string& into, std::vector<std::string> before = {},
             const std::vector<std::string>& after = {}) {
     before.insert(before.end(), {ADVERSARY_PROGRAM, "run", GetParam().name, (folder_ / into).string(),
                                  "--frames", std::to_string(frames), "--edge", pixels_of_an_edge()});
     before.insert(before.end(), after.begin(), after.end());
     const fs::path log = folder_ / (into + ".log");
-    // A viewer that is faster by itself would be left to itself, and nothing would be tested.
+    // Otherwise a viewer that is faster natively would not be substituted, and nothing would be tested.
     ASSERT_EQ(run_command(before, log, {"UNDERSTUDY_SPEED_GUARD=off"}), 0) << contents(log);
   }
 
@@ -87,7 +88,7 @@ TEST_P(Adversary, ShowsNoWrongImage) {
   if (!HasFailure() && !keeps_images()) fs::remove_all(folder_);
 }
 
-/// Those that full_only.txt names, or the others.
+/// Returns the scenarios that full_only.txt names, or the others.
 std::vector<NamedScenario> scenarios(bool full_only) {
   std::set<std::string> named;
   std::ifstream file(ADVERSARY_FULL_ONLY);

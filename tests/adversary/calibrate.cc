@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // adversary_calibrate FOLDER
 //
-// Where the bound lies between right images and wrong ones. FOLDER holds what ADVERSARY_KEEP_IMAGES=1
-// adversary_test has kept. For each bound: how many of the images that Understudy showed exceed it, and how
-// many bare images that were broken on purpose do not.
+// Measures where the bound between right and wrong images lies. FOLDER holds what ADVERSARY_KEEP_IMAGES=1
+// adversary_test has kept. Prints, for each bound, the percentage of images beyond it: of those shown under
+// Understudy, and of bare images that were broken on purpose.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr int greatest_bound = 12;
 
-/// An image made wrong: of the right one and of the one before.
+/// A way to make a wrong image from the right one and the one before.
 struct Break {
   const char* name;
   std::function<Image(const Image& now, const Image& before)> make;
@@ -42,7 +42,7 @@ void scale(std::uint8_t* pixel, double by) {
   for (int i = 0; i < 3; ++i) pixel[i] = static_cast<std::uint8_t>(std::lround(std::min(255.0, by * pixel[i])));
 }
 
-/// One tile in the midst of the image.
+/// Whether a pixel lies in one tile in the middle of the image.
 bool in_tile(const Image& image, int x, int y) {
   return x / tile_edge == image.width / tile_edge / 2 && y / tile_edge == image.height / tile_edge / 2;
 }

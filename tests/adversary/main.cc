@@ -3,8 +3,8 @@
 // adversary run NAME FOLDER [--frames N] [--edge N] [--exact]
 // adversary show random_SEED
 //
-// Runs one scenario (random_SEED: one that was made by chance) and leaves what it showed: FOLDER/frame_NNNN.pam
-// (RGBA of 8 bits, rows from below) and facts.txt.
+// Runs one scenario (random_SEED: a randomly generated one) and saves what it showed: FOLDER/frame_NNNN.pam
+// (8-bit RGBA, rows bottom up) and facts.txt.
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -34,7 +34,7 @@ void list() {
     std::cout << name << "\t" << text_of(scenario.expectation) << "\t" << scenario.sentence << "\n";
 }
 
-/// Of `random_SEED`; none for other names.
+/// Returns the seed of `random_SEED`; null for other names.
 std::optional<unsigned> seed_of(const std::string& name) {
   if (!name.starts_with("random_")) return std::nullopt;
   return static_cast<unsigned>(std::stoul(name.substr(7)));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs by chance: where one is substituted, is every frame right? And is one whose colours depend on the
-// sample alone substituted?
+// Randomly generated programs: if one is substituted, is every frame right? And if its colours depend on the
+// sample alone, is it substituted?
 //
-// The first hundred seeds are run with every list of tests, all of them with ./run test --full.
-// ADVERSARY_FIRST_SEED begins elsewhere.
+// The first hundred seeds are run in every list of tests, all of them by ./run test --full.
+// ADVERSARY_FIRST_SEED sets another first seed.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ std::string contents(const fs::path& path) {
 }
 
 struct Outcome {
-  bool visible = false;  ///< bare, some frame is not of one colour
+  bool visible = false;  ///< in the bare run, some frame is not of one colour
   Verdict verdict;
 };
 
@@ -89,7 +89,7 @@ class Programs : public testing::TestWithParam<unsigned> {
   }
 };
 
-/// Of those that depend on the sample alone and show something.
+/// Counts programs that depend on the sample alone and show something.
 struct Count {
   int of_the_sample_alone = 0;
   int substituted = 0;
@@ -113,7 +113,7 @@ TEST_P(Programs, AreRightWhereTheyAreSubstituted) {
   Count count;
   for (unsigned seed = first; seed < end; ++seed) count.add(seed, outcome_of(seed));
   say(count, first, end);
-  // 95 of 100 are asked for over all seeds; of so few, one may be left.
+  // Over all seeds, 95 of 100 are required; of so few, one may be left.
   EXPECT_GE(count.substituted, count.of_the_sample_alone - 1);
 }
 
@@ -121,7 +121,8 @@ INSTANTIATE_TEST_SUITE_P(FirstHundred, Programs, testing::Range(0U, 5U), testing
 
 class ProgramThatWasShownWrong : public Programs {};
 
-// 295 shows a neighbour's value a little, times a uniform that changes in every frame: it was taken for light.
+// Seed 295 shows a little of a neighbour's value, times a uniform that changes in every frame: it was taken for
+// light.
 TEST_P(ProgramThatWasShownWrong, IsRight) {
   outcome_of(GetParam());
 }

@@ -18,7 +18,7 @@ Dependence dependence_of(unsigned seed) {
   return seed / 2 % 2 == 0 ? Dependence::sample_alone : Dependence::other_things;
 }
 
-/// Uniforms of every program. `moment` is 0 until frame 3.
+/// Sets the uniforms of every program. `moment` is 0 until frame 3.
 void set_uniforms(const GlslProgram& program, int frame) {
   program.use();
   program.set("level", 0.35F);

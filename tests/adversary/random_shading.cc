@@ -6,7 +6,7 @@
 namespace adversary {
 namespace {
 
-/// Writes expressions and statements. Each value is bounded and none is NaN, so that every driver computes the
+/// Writes expressions and statements. Each value is bounded and none is NaN, so that all drivers compute the
 /// same.
 class Writer {
  public:
@@ -55,7 +55,7 @@ class Writer {
     return text;
   }
 
-  /// Of its argument and uniforms that never change.
+  /// Returns a function of its argument and of uniforms that never change.
   static std::string function_of(Writer writer) {
     writer.dependent_ = false;
     writer.in_function_ = true;
@@ -69,7 +69,7 @@ class Writer {
     return words[below(static_cast<unsigned>(words.size()))];
   }
   std::string number() { return any({"0.125", "0.25", "0.4", "0.5", "0.75", "1.0"}); }
-  /// From 0 to 1.
+  /// An expression from 0 to 1.
   std::string share() { return "clamp(" + leaf() + ", 0.0, 1.0)"; }
 
   std::string leaf() {

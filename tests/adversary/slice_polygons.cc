@@ -77,7 +77,7 @@ std::vector<Vector> triangles(std::span<const Polygon> polygons) {
 }
 
 std::vector<Vector> box_triangles() {
-  // Each face as its four corners, counter-clockwise from outside.
+  // The four corners of each face, counter-clockwise as seen from outside.
   constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
   std::vector<Polygon> polygons;

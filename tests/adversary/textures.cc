@@ -9,7 +9,7 @@
 namespace adversary {
 namespace {
 
-/// Texels as they are handed to OpenGL.
+/// Texels as they are passed to OpenGL.
 struct Pixels {
   GLenum type = GL_FLOAT;
   std::vector<std::uint8_t> bytes;
@@ -30,7 +30,7 @@ float scale_of(Texel texel) {
   return scales[static_cast<std::size_t>(texel)];
 }
 
-/// In the exact reference the same numbers, as floats.
+/// Converts the grid to texels; in the exact reference, to floats of the same values.
 Pixels pixels_of(const Canvas& canvas, const Grid& grid, Texel texel) {
   const float scale = scale_of(texel);
   if (canvas.exact() && scale != 0) {

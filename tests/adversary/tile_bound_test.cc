@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bound itself: what passes, and what does not.
+// What the bound passes, and what it does not.
 #include "tests/adversary/tile_bound.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ Image even(std::uint8_t value, int width = edge, int height = edge) {
   return {width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height, value)};
 }
 
-/// Adds to one channel of the pixels of a box.
+/// Adds `by` to the green channel of a rectangle's pixels.
 Image changed(Image image, int x, int y, int width, int height, int by) {
   for (int j = y; j < y + height; ++j)
     for (int i = x; i < x + width; ++i) {

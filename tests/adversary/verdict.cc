@@ -17,7 +17,7 @@ std::string contents(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Line by line; with both, where one is not what it was bare. Empty: there is none.
+/// Returns the first line that differs from the bare run, with both versions; empty if none does.
 std::string first_difference(const std::filesystem::path& bare, const std::filesystem::path& under) {
   std::ifstream before(bare), after(under);
   std::string expected, told;
@@ -30,7 +30,7 @@ std::string first_difference(const std::filesystem::path& bare, const std::files
   }
 }
 
-/// The frames that the nodes drew, by number.
+/// Returns the numbers of the frames that were substituted.
 std::vector<int> substituted_frames(const std::filesystem::path& report) {
   std::vector<int> frames;
   const nlohmann::json json = nlohmann::json::parse(contents(report));

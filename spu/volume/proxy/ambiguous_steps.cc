@@ -17,7 +17,7 @@ double length_of(const std::array<double, 9>& metric, const volume::Vec3& way) {
 }  // namespace
 
 bool count_as_measured(const std::array<double, 9>& metric, std::span<const MeasuredWay> ways) {
-  constexpr double same = 0.3;  // how well a fit tells the length of a way
+  constexpr double same = 0.3;  // steps: precision of a fitted path length
   return std::ranges::all_of(ways, [&](const MeasuredWay& measured) {
     return std::abs(length_of(metric, measured.way) - measured.steps) <= same;
   });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps that one view does not tell. Under a parallel camera all rays have one direction, in which steps of one
-// length in texels, in the world and in texture space are as many; in another direction they are not.
+// Steps that one view leaves open. Under a parallel camera all rays have one direction. In this direction,
+// steps of one length in texels, in the world and in texture space may give the same counts; in another they do
+// not.
 #pragma once
 
 #include <array>
@@ -12,24 +13,24 @@
 
 namespace understudy::spu {
 
-/// A way through the box, and how many steps it took when it was measured.
+/// A path through the box, and the number of steps along it when it was measured.
 struct MeasuredWay {
   volume::Vec3 way{};
   double steps = 0;
 };
 
-/// Whether steps of this metric make as many of each way, to a third of a step.
+/// Whether steps of this metric give every path its measured number of steps, to within 0.3 steps.
 bool count_as_measured(const std::array<double, 9>& metric, std::span<const MeasuredWay> ways);
 
-/// Of fits that explain this view those that count as earlier ones did; all of them where none does, as steps
-/// may be others now.
+/// Returns those `fits` of this view that also match the counts of earlier views. All of them if none does: the
+/// steps may have changed.
 std::vector<StepFit> that_count_as_measured(std::vector<StepFit> fits, std::span<const MeasuredWay> ways);
 
-/// Whether steps of both are as long as each other in every direction, but for one factor.
+/// Whether the metrics differ by a constant factor only.
 bool of_one_shape(const std::array<double, 9>& one, const std::array<double, 9>& other);
 
-/// Whether a way tells `metrics` apart, by a quarter of a step or more. They counted alike when `steps` were
-/// measured by the first of them; `steps` may have become longer or shorter.
+/// Whether `way` distinguishes `metrics` by a quarter of a step or more. They gave equal counts when `steps`
+/// were measured with the first of them; `steps` may have become longer or shorter since.
 bool tells_apart(std::span<const std::array<double, 9>> metrics, const volume::RaySteps& steps,
                  const volume::Vec3& way);
 

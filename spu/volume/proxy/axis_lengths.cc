@@ -10,12 +10,12 @@
 
 namespace understudy::spu {
 
-// The linear part of the matrix is K R E: E holds the edges' lengths, R is a rotation, and K scales x and y
-// alike (once they are counted in pixels) and depth by another number. So with q_ij = x_i x_j + y_i y_j and d
-// the row of depth, q_ij + k d_i d_j is 0 for two different edges, which gives k, and the square of a length
-// for twice the same.
+// The linear part of the matrix is K R E: E holds the edge lengths, R is a rotation, and K scales x and y alike
+// (once they are counted in pixels) and depth by another factor. With q_ij = x_i x_j + y_i y_j and d the depth
+// row, q_ij + k d_i d_j is 0 for two different edges, which gives k; for i = j it is the squared length of an
+// edge.
 std::optional<volume::Vec3> axis_lengths(const volume::Matrix4& texture_to_clip, int width, int height) {
-  constexpr double along_axis = 1e-3;  // what the lengths would be told by
+  constexpr double along_axis = 1e-3;  // least product of depths that determines the lengths
   constexpr double oblique = 1e-3;     // cosine
   const auto row = [&](std::size_t index, double factor) {
     return volume::Vec3{factor * texture_to_clip[4 * index], factor * texture_to_clip[4 * index + 1],
@@ -23,7 +23,7 @@ std::optional<volume::Vec3> axis_lengths(const volume::Matrix4& texture_to_clip,
   };
   const volume::Vec3 x = row(0, width);
   const volume::Vec3 y = row(1, height);
-  // In perspective w is the depth before the eye; in a parallel projection it is constant.
+  // In perspective, w is the depth in front of the eye; in a parallel projection it is constant.
   volume::Vec3 depth = row(3, 1);
   if (volume::length(depth) == 0) depth = row(2, 1);
   const double deepest = volume::length(depth);

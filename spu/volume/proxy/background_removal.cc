@@ -19,7 +19,7 @@ double composed(double alpha, double samples) {
   return -std::expm1(samples * std::log1p(-std::min(alpha, 1.0)));
 }
 
-/// The least squares fit of contrasts under one opacity of a sample.
+/// Least-squares fit of the contrast, given the opacity of one sample.
 struct Fit {
   Fit(double alpha, std::span<const double> samples, std::span<const Vec3> differences) {
     double squares = 0;
@@ -42,8 +42,8 @@ struct Fit {
   double residual = 0;
 };
 
-/// The opacity of a sample, 1e-6 to 1, that fits best: on a logarithmic scale, first by steps, then by golden
-/// section.
+/// Returns the opacity of one sample, 1e-6 to 1, that fits best. Searches on a logarithmic scale, first in
+/// equal steps, then by golden section.
 double best_alpha(std::span<const double> samples, std::span<const Vec3> differences) {
   constexpr double lowest = -6;
   constexpr int steps = 48;
@@ -82,7 +82,7 @@ Vec3 colour_of(const Rgba& rgba) {
 }
 
 BackgroundContrast contrast_of(std::span<const double> samples, std::span<const Vec3> differences) {
-  constexpr double nothing = 2e-5;  // what rounding makes of a float colour's sums
+  constexpr double nothing = 2e-5;  // rounding error of sums of float colours
   constexpr std::size_t fewest = 3;
   constexpr double opaque = 0.6;
   const bool shows = std::ranges::any_of(differences, [&](const Vec3& difference) {
@@ -116,7 +116,7 @@ std::optional<double> opacity_of(const BackgroundContrast& one, const Background
   if (determinant < least_squared_sine * of_one * of_other) return std::nullopt;
   const double along_one = volume::dot(difference, one.full);
   const double along_other = volume::dot(difference, other.full);
-  // Opacities add up: that of the near samples, and what is seen through these of the far ones'.
+  // The opacities add up: that of the near samples, and that of the far ones as seen through the near ones.
   const double near = (along_one * of_other - along_other * common) / determinant;
   const double far = (along_other * of_one - along_one * common) / determinant;
   return std::clamp(near + far, 0.0, 1.0);

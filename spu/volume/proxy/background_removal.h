@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs that compose their samples by over, put the result over a background colour of their own and write
-// the same alpha everywhere. Of n samples of one value such a fragment shows
+// Programs that compose their samples by over, put the result over a background colour of their own, and write
+// the same alpha everywhere. For n samples of one value, such a fragment shows
 //
 //     background + (1 - T^n) (C - background)
 //
-// where T is the transparency of one sample and C the colour of so many that nothing shines through. So the
-// opacity is how far along C - background, the contrast of the value, a fragment lies from the background. Rays
-// whose samples have been counted tell that contrast.
+// where T is the transparency of one sample and C the colour of so many samples that nothing shines through.
+// The opacity is therefore how far the fragment lies from the background along C - background, the contrast of
+// the value. Contrasts are measured on rays whose samples have been counted.
 #pragma once
 
 #include <optional>
@@ -31,9 +31,9 @@ struct CountedPlace {
   double samples = 0;
 };
 
-/// Of one value.
+/// The contrast of one value.
 struct BackgroundContrast {
-  volume::Vec3 full{};  ///< C - background; zero for a value that shows nothing
+  volume::Vec3 full{};  ///< C - background; zero for an invisible value
   double alpha = 0;     ///< 1 - T
 
   bool visible() const { return full != volume::Vec3{}; }
@@ -41,22 +41,23 @@ struct BackgroundContrast {
 
 volume::Vec3 colour_of(const volume::Rgba& rgba);
 
-/// The contrast of a value that on rays of so many samples, in ascending order, shows these differences from
-/// the background. Rays that hardly let light through are left out: programs may end them early.
+/// Returns the contrast of a value, given its `differences` from the background on rays of `samples` samples,
+/// in ascending order. Beyond the first three, rays of an opacity of 0.6 or more are ignored: programs may
+/// terminate them early.
 BackgroundContrast contrast_of(std::span<const double> samples, std::span<const volume::Vec3> differences);
 
-/// The opacity of a ray of one value that differs from the background by `difference`.
+/// Returns the opacity of a ray of one value that differs from the background by `difference`.
 double opacity_of(const BackgroundContrast& contrast, const volume::Vec3& difference);
 
-/// The same of a ray that has samples of two values. Null where both contrasts lie nearly along one line.
+/// Likewise for a ray with samples of two values. Null if the two contrasts are nearly parallel.
 std::optional<double> opacity_of(const BackgroundContrast& one, const BackgroundContrast& other,
                                  const volume::Vec3& difference);
 
-/// What a fragment's samples show by themselves, premultiplied, where they have that opacity.
+/// Returns what a fragment's samples show by themselves, premultiplied, given their opacity.
 volume::Rgba without_background(const ShaderBackground& background, double opacity,
                                 const volume::Rgba& fragment);
 
-/// The fragment of a ray whose samples show `ray`, premultiplied.
+/// Returns the fragment of a ray whose samples show `ray`, premultiplied.
 volume::Rgba over_background(const ShaderBackground& background, const volume::Rgba& ray);
 
 }  // namespace understudy::spu

@@ -17,9 +17,9 @@ using volume::Vec4;
 
 namespace {
 
-/// Whether a camera sees the box's faces from outside: low and high of each axis.
+/// Which of the box's faces a camera sees from outside: low and high of each axis.
 std::array<bool, 6> seen_faces(const volume::Matrix4& camera, const volume::Box& box) {
-  // The eye is where clip coordinates are a multiple of (0, 0, 1, 0): w tells it from a direction of view.
+  // The eye is the point that maps to a multiple of (0, 0, 1, 0); with w = 0 it is a direction of view.
   const volume::Matrix4 back = volume::inverse(camera).value_or(volume::identity());
   const Vec4 eye = volume::transform(back, {0, 0, -1, 0});
   const double rounding = 1e-9 * (std::abs(eye[0]) + std::abs(eye[1]) + std::abs(eye[2]));
@@ -47,7 +47,7 @@ std::optional<volume::Box> box_of(const ObservedPolygons& polygons, const volume
   const Vec3 edge = subtract(box.high, box.low);
   if (!(edge[0] > 0 && edge[1] > 0 && edge[2] > 0)) return std::nullopt;
 
-  std::array<double, 6> covered{};  // of each face, in units of its area
+  std::array<double, 6> covered{};  // of each face, as a fraction of its area
   for (std::size_t p = 0; p < polygons.count(); ++p) {
     const auto corners = polygons.polygon(p);
     std::optional<std::size_t> face;
@@ -101,7 +101,7 @@ RaysThroughBox::RaysThroughBox(const volume::Matrix4& texture_to_clip, const vol
                                const std::vector<volume::HalfSpace>& cuts)
     : clip_to_texture_(volume::inverse(texture_to_clip).value_or(volume::identity())), box_(box), cuts_(cuts) {
   if (!cuts_.empty()) {
-    // Its middle may lie outside of the view, or behind the eye.
+    // The box's middle may lie outside the view, or behind the eye: take the longest ray instead.
     constexpr int places = 8;  // to each side
     double longest = 0;
     for (int y = -places; y <= places; ++y) {

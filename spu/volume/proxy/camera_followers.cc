@@ -26,7 +26,7 @@ std::span<const float> values_of(const MarchInputs& inputs, std::size_t vector) 
   return std::span(inputs.varying).subspan(begins[vector], end - begins[vector]);
 }
 
-/// Null: `inputs` have no vector of that name.
+/// Null if `inputs` has no vector of that name.
 std::optional<std::span<const float>> values_named(const MarchInputs& inputs, std::size_t name) {
   for (std::size_t k = 0; k < inputs.varying_begins.size(); ++k) {
     if (name_of(inputs, k) == name) return values_of(inputs, k);
@@ -39,13 +39,13 @@ std::optional<std::span<const float>> values_named(const MarchInputs& inputs, st
 CameraFollowers::Moves& CameraFollowers::moves_of(std::size_t name, bool chooses, bool is_first) {
   const auto known = std::ranges::find(vectors_, name, &Moves::name);
   if (known != vectors_.end()) return *known;
-  // One that comes later may have moved with the camera while a flag kept it from anything.
+  // A vector that appears later may have moved with the camera while a flag kept it from any effect.
   const int until_trusted = is_first || !chooses ? 0 : changes_until_trusted;
   return vectors_.emplace_back(Moves{.name = name, .until_trusted = until_trusted, .chose = chooses});
 }
 
 std::vector<bool> CameraFollowers::look(const MarchInputs& before, const MarchInputs& now, Camera camera) {
-  // A camera that moves along one axis, or turns about another, leaves some of its vectors as they are for a
+  // A camera that moves along one axis, or turns about another, leaves some of its vectors unchanged for a
   // while.
   constexpr int most_stayed = 4;
   constexpr int most_returns = 4;
@@ -69,9 +69,10 @@ std::vector<bool> CameraFollowers::look(const MarchInputs& before, const MarchIn
     if (returns) vector.returned = std::min(vector.returned + 1, most_returns);
     if (!same && (vector.stayed == most_stayed || (returns && vector.returned < most_returns)))
       vector.until_trusted = changes_until_trusted + 1;
-    // It may have moved with the camera while a flag kept it from choosing anything.
+    // The vector may have moved with the camera while a flag kept it from choosing anything.
     if (chooses_now && !std::exchange(vector.chose, chooses_now)) vector.until_trusted = changes_until_trusted;
-    // What shows nothing yet, as a plane before the volume, would be trusted when it does.
+    // A vector that chooses never regains trust: one without effect so far, such as a plane in front of the
+    // volume, would be trusted just when it takes effect.
     if (!same && vector.until_trusted > 0 && !chooses_now) --vector.until_trusted;
     follow.insert(follow.end(), values.size(), same || vector.until_trusted == 0);
     vector.stayed = same ? std::min(vector.stayed + 1, most_stayed) : 0;

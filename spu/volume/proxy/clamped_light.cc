@@ -15,8 +15,9 @@ using volume::Rgba;
 
 namespace {
 
-/// How values all over the range, opaque ones too, look in a field that rises across the face by which the ray
-/// enters, where even the first sample has the others' normal; and where slopes face the eye and are brightest.
+/// One value, possibly an opaque one, in a field that rises perpendicularly to the face by which the ray
+/// enters, where even the first sample has the same normal as the others, or on slopes that face the eye and
+/// are brightest.
 struct LitValue {
   Tint seen;
   Tint base;
@@ -32,7 +33,7 @@ std::vector<LitValue> lit_values(SlopeProbe& slopes, const LitRay& ray, const vo
   const std::vector<float> values = values_over(range, count);
   const std::vector<Rgba> base = slopes.base(ray.x, ray.y, values);
   const LightSpace directions(light, ray.way.way);
-  // Values of a ray whose own colours, like those of the values beside them, are seen, and hardly differ.
+  // Whether a value and its neighbours in the list are visible and have nearly the same colour.
   const auto is_even = [&](std::size_t i) {
     const auto is_visible = [](const Rgba& colour) { return reached(colour) && colour[3] > least_opacity; };
     if (!std::ranges::all_of(std::span(base).subspan(i - 1, 3), is_visible)) return false;
@@ -71,8 +72,8 @@ std::vector<LitValue> lit_values(SlopeProbe& slopes, const LitRay& ray, const vo
 
 /// How well a light explains values.
 struct Explanation {
-  bool is_one = false;  ///< of nearly all
-  double differ = 0;    ///< by so much, in all, do those that another light shows otherwise
+  bool is_one = false;  ///< the light explains nearly all values
+  double differ = 0;    ///< summed error over the values that the other light would show differently
 };
 
 Explanation explanation(const volume::Light& light, const volume::Light& other,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a program clamps what light makes of a colour, told by values all over the range.
+// Whether a program clamps lit colours, determined from values over the whole range.
 #pragma once
 
 #include <array>
@@ -12,9 +12,9 @@
 
 namespace understudy::spu {
 
-/// `light`, which clamps nothing, without and with clamped colours, as far as it explains what values on a ray
-/// show and the other does so no better; none where neither does. The ray enters by a face across
-/// `axis_of_entry`.
+/// Returns `light`, which does not clamp, the same light with clamped colours, or both: each one that explains
+/// what values on a ray show, unless the other explains it clearly better. Empty if neither does. The ray
+/// enters by a face perpendicular to `axis_of_entry`.
 std::vector<volume::Light> without_and_with_clamp(SlopeProbe& slopes, const LitRay& ray,
                                                   const volume::RaySteps& steps, std::size_t axis_of_entry,
                                                   const volume::Light& light,

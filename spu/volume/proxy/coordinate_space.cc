@@ -10,13 +10,13 @@
 namespace understudy::spu {
 namespace {
 
-/// What the polygons of a draw enclose.
+/// Returns the box, possibly cut, that the polygons of a draw enclose.
 std::optional<CutBox> body_of(const Capture& capture) {
   if (const auto box = box_of(capture.polygons, capture.fit->texture_to_clip)) return CutBox{*box, {}};
   return cut_box_of(capture.polygons);
 }
 
-/// With `input` for the coordinate; in `captured`, unless the run was captured so before.
+/// Returns the capture of the run with `input` as the coordinate: the existing one, or a new one in `captured`.
 const Capture& capture_by(const MarchContext& measured, const std::string& input, Capture& captured) {
   if (measured.seen != nullptr && measured.seen->coordinate == input) return *measured.seen;
   captured = capture_vertices(measured.context, measured.run, measured.stages, input);
@@ -27,10 +27,10 @@ bool is_cut(const CutBox& body) {
   return volume::length(body.cut.normal) > 0;
 }
 
-/// What an input may be whose values fill `box`.
+/// Returns the texture coordinates that an input whose values fill `box` may be.
 std::vector<CoordinateSpace> spaces_of(const std::string& input, const volume::Box& box,
                                        const std::array<int, 3>& size) {
-  constexpr double fewest_texels = 2.02;  // a box of the world may be as small
+  constexpr double fewest_texels = 2.02;  // a box in world units may be as small
   bool unit = true;
   bool texels = true;
   bool whole = true;
@@ -59,12 +59,12 @@ std::vector<CoordinateSpace> spaces_of(const std::string& input, const volume::B
   return spaces;
 }
 
-/// Whether the eye is at (0, 0, 0), as in an input that is the way from it.
+/// Whether the eye is at (0, 0, 0), as it is in an input that holds the vector from the eye.
 bool begins_at_eye(const volume::Matrix4& input_to_clip, const volume::Box& box) {
   constexpr double nearly = 1e-3;  // of the box
   double edge = 0;
   for (std::size_t k = 0; k < 3; ++k) edge = std::max(edge, box.high[k] - box.low[k]);
-  // There is nothing at the eye but depth.
+  // At the eye, clip x, y and w are 0.
   return std::ranges::all_of(std::array<std::size_t, 3>{0, 4, 12}, [&](std::size_t row) {
     const volume::Vec3 slope{input_to_clip[row], input_to_clip[row + 1], input_to_clip[row + 2]};
     return std::abs(input_to_clip[row + 3]) <= nearly * edge * volume::length(slope);
@@ -96,7 +96,7 @@ std::optional<volume::Vec3> uniform_vector(const MarchContext& measured, const s
   return volume::Vec3{double(value[0]), double(value[1]), double(value[2])};
 }
 
-/// What `name` is in this draw; null where it is none or many.
+/// Returns the value of `name` in this draw; null if it has none or several.
 std::optional<volume::Vec3> origin_of(const MarchContext& measured, const Capture& capture,
                                       const std::string& name) {
   if (name.empty()) return volume::Vec3{};
@@ -106,7 +106,7 @@ std::optional<volume::Vec3> origin_of(const MarchContext& measured, const Captur
   return uniform_vector(measured, name);
 }
 
-/// Whether there is a place in it; the fourth of four numbers is that of a homogeneous one, or something else.
+/// Whether the type can hold a position; a fourth component may be a homogeneous one or something else.
 bool is_vector(GLenum type) {
   return type == GL_FLOAT_VEC3 || type == GL_FLOAT_VEC4;
 }
@@ -123,7 +123,7 @@ std::vector<std::string> possible_origins(const ProgramStages& stages, const std
   return names;
 }
 
-/// Texture coordinates that are the way from the eye in `input` plus the eye's position.
+/// Texture coordinates that are the vector from the eye in `input` plus the eye's position.
 std::vector<CoordinateSpace> spaces_from_eye(const MarchContext& measured, const Capture& capture,
                                              const std::string& input, const volume::Box& box) {
   if (!begins_at_eye(capture.fit->texture_to_clip, box)) return {};
@@ -163,7 +163,7 @@ std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured) {
     if (!body) continue;
     std::vector<CoordinateSpace> of_input = spaces_from_eye(measured, capture, input.name, body->box);
     if (of_input.empty()) of_input = spaces_of(input.name, body->box, measured.texture.size);
-    // What is left of a box before the near plane is no whole one.
+    // What the near plane leaves of a box is not the whole box.
     if (is_cut(*body)) std::erase_if(of_input, &CoordinateSpace::of_whole_box);
     if (of_input.empty()) continue;
     const CoordinateSpace& likeliest = of_input.front();

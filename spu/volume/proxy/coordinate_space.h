@@ -21,12 +21,12 @@ namespace understudy::spu {
 /// Texture coordinate = scale * (input + origin) + offset, axis by axis.
 struct CoordinateSpace {
   std::string input;
-  /// Another input, or a uniform, whose value is one in all of the draw. Where `input` is the way from the eye,
-  /// as in shaders that interpolate the ray's direction, this is the eye; empty: (0, 0, 0).
+  /// Another input, or a uniform, that is constant over the draw. If `input` is the vector from the eye, as in
+  /// shaders that interpolate the ray's direction, this is the eye's position. Empty: (0, 0, 0).
   std::string origin{};
   volume::Vec3 scale{1, 1, 1};
   volume::Vec3 offset{};
-  bool of_whole_box = false;  ///< so that the box that was drawn is the whole texture
+  bool of_whole_box = false;  ///< the box that was drawn is taken for the whole texture
   bool operator==(const CoordinateSpace&) const = default;
 };
 
@@ -34,10 +34,10 @@ struct CoordinateSpace {
 struct ProxyBox {
   volume::Box region;
   CameraFit camera;
-  std::vector<volume::HalfSpace> cuts;  ///< where the application has cut it off before the near plane
+  std::vector<volume::HalfSpace> cuts;  ///< planes that cut off the corner in front of the near plane
 };
 
-/// Everything that `run` is measured on.
+/// What a measurement of `run` needs.
 struct MarchContext {
   const GlContext& context;
   const Run& run;
@@ -46,30 +46,30 @@ struct MarchContext {
   ProbeSurfaces& surfaces;
   std::array<float, 2> range;     ///< of the texels' values
   bool clipped = false;           ///< rays begin or end at clipping planes
-  bool ends_at_geometry = false;  ///< at the opaque geometry, whose depth the program fetches
-  /// Pixels of the window where the program keeps fragments, where it discards others by their place.
+  bool ends_at_geometry = false;  ///< rays end at opaque geometry, whose depth the program fetches
+  /// Pixels of the window in which the program keeps fragments, if it discards others by position.
   std::optional<volume::Rect> kept{};
-  /// As program_check.h has it; not null: samples may be lit.
+  /// As returned by neighbours_of_gradients() (program_check.h); not null: samples may be lit.
   std::optional<program::NeighbourDistance> neighbours{};
-  /// As of program::RayFinding: names of samplers.
+  /// Sampler names, as in program::RayFinding.
   std::span<const std::string> tables_of_one_texel{};
   std::span<const std::string> tables_of_gradients{};
   std::span<const MeasuredWay> ways{};  ///< of earlier views under the same steps
-  const Capture* seen = nullptr;  ///< of this run; where it tells what is asked, the run is not drawn once more
+  const Capture* seen = nullptr;  ///< a capture of this run, used where it suffices instead of another draw
 };
 
-/// Whether the draw covers a whole box in some input of the fragment stage; `seen` is one that was captured
-/// already.
+/// Whether the draw covers a whole box in some input of the fragment stage; `seen` is an existing capture of
+/// it.
 bool draws_box(const GlContext& context, const Run& run, const ProgramStages& stages, const Capture& seen);
 
-/// The coordinates that may address the volume: inputs of the fragment stage over which the draw is a whole
-/// box, as they are, in texels, or with the box for the whole texture, which they are in the world or in the
-/// object's own space, or such inputs plus the eye's position. The likelier ones first; those that differ by an
-/// offset alone stand side by side.
+/// Returns the coordinates that may address the volume, likelier ones first; those that differ by an offset
+/// alone are adjacent. They are inputs of the fragment stage over which the draw is a whole box, or such inputs
+/// plus the eye's position: as they are, in texels, or (inputs in world or object space) with the box as the
+/// whole texture.
 std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured);
 
-/// The box of the draw in the texture space of `space`; null when it is no closed surface (the near plane has
-/// cut it).
+/// Returns the box of the draw in the texture space of `space`; null if it is not a closed surface (the near
+/// plane has cut it).
 std::optional<ProxyBox> proxy_box(const MarchContext& measured, const CoordinateSpace& space);
 
 }  // namespace understudy::spu

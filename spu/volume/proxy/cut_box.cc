@@ -67,7 +67,7 @@ std::optional<std::size_t> face_under(const std::vector<Vec3>& polygon) {
   return std::nullopt;
 }
 
-/// Of one vertex at least.
+/// Needs at least one vertex.
 volume::Box box_around(const ObservedPolygons& polygons) {
   volume::Box box{polygons.vertices.front().texture, polygons.vertices.front().texture};
   for (const ObservedVertex& v : polygons.vertices) {
@@ -87,7 +87,7 @@ std::optional<CutBox> cut_box_of(const ObservedPolygons& polygons) {
   const Vec3 edge = volume::subtract(box.high, box.low);
   if (!(edge[0] > 0 && edge[1] > 0 && edge[2] > 0)) return std::nullopt;
 
-  // In the unit cube: areas on its faces, and the rest.
+  // In the unit cube: the areas covered on its faces, and the polygons on none of them.
   std::vector<Vec3> all;
   std::vector<Vec3> on_cut;
   std::array<double, 6> covered{};
@@ -123,7 +123,7 @@ std::optional<CutBox> cut_box_of(const ObservedPolygons& polygons) {
       std::all_of(all.begin(), all.end(), [&](const Vec3& p) { return above(p) >= -same_share_of_edge; });
   if (!flat || !convex) return std::nullopt;
 
-  // A closed surface has no area in sum: what its other faces lack lies on the cut.
+  // The area vectors of a closed surface sum to zero: the cut has the area that the faces lack.
   Vec3 open{};
   for (std::size_t face = 0; face < 6; ++face) {
     const double expected = volume::length(twice_area(part_behind(face_of_unit_cube(face), cut))) / 2;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A box whose corner before the near plane was cut off, and closed again, by the application itself: what some
-// ray casters draw when the eye is inside their volume.
+// A box whose corner in front of the near plane the application has cut off and closed again: what some ray
+// casters draw while the eye is inside their volume.
 #pragma once
 
 #include <optional>
@@ -11,11 +11,12 @@
 namespace understudy::spu {
 
 struct CutBox {
-  volume::Box box;        ///< around what is left
+  volume::Box box;        ///< bounding box of what is left
   volume::HalfSpace cut;  ///< in units of the observed coordinate
 };
 
-/// The box and its cut, where the polygons are the closed surface of a box that one plane has cut.
+/// Returns the box and its cut if the polygons are the closed surface of a box that one plane has cut;
+/// otherwise null.
 std::optional<CutBox> cut_box_of(const ObservedPolygons& polygons);
 
 }  // namespace understudy::spu

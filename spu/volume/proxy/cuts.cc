@@ -26,7 +26,7 @@ constexpr std::size_t regions = 27;
 constexpr std::size_t numbers_per_plane = 6;  ///< a point on it, and its normal
 constexpr std::size_t most_clipping_planes = 8;
 
-/// Another program's uniform of that name may be of another kind.
+/// Whether the program has this uniform, of this type: another program's uniform of that name may have another.
 bool has(const GlContext& context, GLuint program, const std::string& uniform, GLenum type) {
   constexpr int with_indices = 310;
   if (context.version < with_indices) return false;
@@ -92,7 +92,7 @@ class Parts {
       parts.push_back(planes_of(cells));
       return;
     }
-    // The cut that leaves the most on sides that are kept or left out as a whole.
+    // Choose the cut with the most cells on sides that are kept or cropped as a whole.
     std::size_t best_axis = 0;
     int best_at = 0;
     int best = -1;
@@ -179,7 +179,7 @@ std::vector<std::vector<HalfSpace>> cropping_of(const DispatchTable& gl, GLuint 
     if (location >= 0) gl.GetUniformiv(program, location, &flag);
     kept[region] = flag != 0;
   }
-  // The eye is where clip coordinates are a multiple of (0, 0, 1, 0), on the side of smaller depth.
+  // The eye is the point that maps to a multiple of (0, 0, 1, 0), on the side of smaller depth.
   const auto back = volume::inverse(texture_to_clip);
   volume::Vec4 eye = volume::transform(back.value_or(volume::identity()), {0, 0, -1, 0});
   const double rounding = 1e-9 * (std::abs(eye[0]) + std::abs(eye[1]) + std::abs(eye[2]));
@@ -202,7 +202,7 @@ std::vector<HalfSpace> clipping_of(const DispatchTable& gl, GLuint program) {
       point[k] = double(number(gl, program, clipping_planes, 1 + numbers_per_plane * i + k));
       normal[k] = double(number(gl, program, clipping_planes, 4 + numbers_per_plane * i + k));
     }
-    // As a row vector the plane travels by the matrix itself.
+    // A plane is a row vector: it is transformed by the matrix itself, not by its inverse.
     const volume::Vec4 in_world{normal[0], normal[1], normal[2], -volume::dot(normal, point)};
     volume::Vec4 in_texture{};
     for (std::size_t column = 0; column < 4; ++column)
@@ -220,7 +220,7 @@ std::vector<std::vector<HalfSpace>> kept_parts(const std::array<bool, regions>& 
                                                const std::array<double, 4>& eye) {
   std::vector<std::vector<HalfSpace>> parts;
   Parts(kept, planes, eye).append({}, parts);
-  // Of a volume that is cropped away nothing is kept.
+  // If everything is cropped, one part remains that keeps nothing.
   if (parts.empty()) parts.push_back({{{0, 0, 0}, -1}});
   return parts;
 }

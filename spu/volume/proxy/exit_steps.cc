@@ -12,7 +12,7 @@
 namespace understudy::spu {
 namespace {
 
-/// In steps: the sample at the exit itself is not lost to rounding.
+/// In steps: keeps the sample at the exit itself from being lost to rounding.
 constexpr double exit_rounding = 1e-3;
 
 }  // namespace
@@ -23,7 +23,7 @@ bool may_be_counted_from_exit(const volume::RaySteps& steps) {
 
 volume::RaySteps counted_from_exit(const volume::RaySteps& steps, const RaysThroughBox& rays,
                                    const volume::Rect& viewport, const volume::Rect& rect) {
-  constexpr auto no_sample = float(volume::max_planes);  // begins behind the end of every ray
+  constexpr auto no_sample = float(volume::max_planes);  // begins beyond the end of every ray
   if (rect.empty()) return steps;
   volume::RaySteps counted = steps;
   counted.first = 0;

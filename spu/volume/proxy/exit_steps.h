@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs that march from the back of the volume towards the eye: their samples lie on steps from where a ray
-// leaves the box. Nodes count from where it enters, so every pixel's ray gets an offset of its own.
+// Programs that march from the back of the volume towards the eye: their samples lie on steps counted from the
+// exit of a ray. Nodes count from the entry, so every pixel's ray gets an offset of its own.
 #pragma once
 
 #include "spu/volume/proxy/box.h"
@@ -10,16 +10,16 @@
 
 namespace understudy::spu {
 
-/// Not where they are divided evenly, or where the first sample lies a whole step from the exit: nodes would
-/// take one more, at the exit itself.
+/// Whether nodes can place such samples. False for steps that are divided evenly or counted ahead, and if the
+/// first sample lies a whole step from the exit: nodes would take one more, at the exit itself.
 bool may_be_counted_from_exit(const volume::RaySteps& steps);
 
-/// The places of `steps`, which are not divided, counted from the exits of the rays through the pixels of
+/// Returns `steps`, which must not be divided, as counted from the exits of the rays through the pixels of
 /// `rect`.
 volume::RaySteps counted_from_exit(const volume::RaySteps& steps, const RaysThroughBox& rays,
                                    const volume::Rect& viewport, const volume::Rect& rect);
 
-/// The same all over the application's viewport.
+/// Likewise for the application's whole viewport.
 volume::RaySteps counted_from_exit(const volume::RaySteps& steps, const RaysThroughBox& rays,
                                    const FieldProbe& probe);
 

@@ -13,11 +13,12 @@
 namespace understudy::spu {
 namespace {
 
-constexpr double most_elsewhere = 0.05;        ///< of rays, as extremes_lie_on
+constexpr double most_elsewhere = 0.05;        ///< of rays, as in lie_on()
 constexpr double colours_of_8_bits = 0.3;      ///< of a step
-constexpr double shortest_displacement = 0.6;  ///< of a step: less is not told from what colours leave open
+constexpr double shortest_displacement = 0.6;  ///< of a step: colours do not resolve less
 
-/// Those that have samples wherever they begin: some programs take one beyond the end of shorter ones.
+/// Keeps the rays that have samples wherever they begin: on shorter ones, some programs take one beyond the
+/// end.
 std::vector<RayEnds> long_ones(std::vector<RayEnds> ends, const volume::RaySteps& rule) {
   constexpr double long_enough = 2.5;  // steps
   std::erase_if(ends,
@@ -25,7 +26,7 @@ std::vector<RayEnds> long_ones(std::vector<RayEnds> ends, const volume::RaySteps
   return ends;
 }
 
-/// By how many steps later than `rule` says rays have their first sample: the median.
+/// Returns the median number of steps by which first samples lie behind the position that `rule` gives them.
 double later_than(const volume::RaySteps& rule, std::span<const RayEnds> ends) {
   std::vector<double> displacements;
   displacements.reserve(ends.size());
@@ -42,7 +43,8 @@ volume::RaySteps moved_by(volume::RaySteps rule, volume::RayOffsets numbers, con
   return rule;
 }
 
-/// Whether there are fewer samples where rays begin later, or as many, and they lie beyond the end.
+/// False if rays that begin later have fewer samples; true if they have as many, which then lie beyond the end.
+/// Null if neither fits.
 std::optional<bool> only_moves(const volume::RaySteps& rule, double displacement,
                                std::span<const RayEnds> later) {
   volume::RaySteps moved = rule;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A texture of noise by which rays begin, of ray casters that show the largest or the least value of every ray:
-// their samples cannot be counted, but rising fields show where the first one lies (extreme_steps.h).
+// The noise texture that offsets the beginnings of rays, for ray casters that show the largest or the least
+// value of every ray. Their samples cannot be counted, but rising fields show where the first one lies
+// (extreme_steps.h).
 #pragma once
 
 #include <optional>
@@ -15,16 +16,16 @@ namespace understudy::spu {
 
 struct ExtremeJitter {
   Jitter jitter;
-  std::vector<volume::RaySteps> steps;  ///< of rays that begin at the texture's zero
+  std::vector<volume::RaySteps> steps;  ///< of rays at which the texture is zero
 };
 
-/// The texture that moves the first sample of each ray by its own number at the ray's pixel, where there is
-/// one. Afterwards `probe` shows the program's own textures.
+/// Finds the texture whose texel for a ray's pixel moves the ray's first sample; null if there is none.
+/// Afterwards `probe` shows the program's own textures.
 std::optional<ExtremeJitter> find_extreme_jitter(const MarchContext& measured, FieldProbe& probe,
                                                  const volume::TransferFunction& table, const ProxyBox& box);
 
-/// Whether nearly all rays begin by the offsets of `steps`. Only rays tell that have samples wherever they
-/// begin; true where there are none.
+/// Whether nearly all rays begin at the offsets of `steps`. Only rays that have samples wherever they begin are
+/// checked; true if there are none.
 bool begin_as_said(const volume::RaySteps& steps, std::vector<RayEnds> ends);
 
 }  // namespace understudy::spu

@@ -22,21 +22,23 @@ namespace {
 constexpr int ramp_bands = 8;  ///< of two rows each
 constexpr std::size_t fewest_rays = 64;
 
-/// A stretch of the table in which one channel tells the value: from its first entry to its last it only rises,
-/// or only falls.
+/// A range of the table's entries over which one channel only rises, or only falls, and so determines the
+/// value.
 class TellingStretch {
  public:
-  /// The one over which a channel changes most; null where none changes by much.
+  /// Returns the stretch over which a channel changes most; null if none changes by more than 0.2.
   static std::optional<TellingStretch> of(const volume::TransferFunction& table);
 
-  /// Fields go from one to the other: at the stretch's very ends a colour may stand for other values, too.
+  /// The values between which fields rise. They lie inside the stretch, as at its very ends a colour may also
+  /// stand for other values.
   float low() const { return value_of(double(first_) + margin * double(last_ - first_)); }
   float high() const { return value_of(double(last_) - margin * double(last_ - first_)); }
 
-  /// At which part of the way from low() to high() the value lies that has this colour, if there is one.
+  /// Returns the place of the value with this colour, from low() (0) to high() (1); null if the colour does not
+  /// determine it.
   std::optional<double> place_of(const Rgba& colour) const {
     constexpr float rounding = 1e-3F;
-    constexpr double widest = 0.02;  // of the stretch: there, one colour has many values
+    constexpr double widest = 0.02;  // of the stretch: beyond this, one colour has too many values
     const auto begin = rising_.begin();
     const float told = sign_ * colour[channel_];
     const auto from = std::lower_bound(begin, rising_.end(), told - rounding);
@@ -44,7 +46,7 @@ class TellingStretch {
     const double extent = double(rising_.size()) - 1;
     if (from == rising_.begin() || to == rising_.end() || double(to - from) > widest * extent)
       return std::nullopt;
-    // Where the table is flat, in its middle.
+    // Where the table is flat, take the middle of the flat part.
     const double middle = (entry_at(told - flat) + entry_at(told + flat)) / 2;
     return (middle / extent - margin) / (1 - 2 * margin);
   }
@@ -61,7 +63,7 @@ class TellingStretch {
         last_(last) {
     for (std::size_t i = first; i <= last; ++i) rising_.push_back(sign * table.entries[i][channel]);
   }
-  /// Between which entries the channel reaches that value.
+  /// The fractional entry at which the channel reaches this value.
   double entry_at(float told) const {
     const auto above = std::upper_bound(rising_.begin() + 1, rising_.end() - 1, told);
     const float rise = *above - above[-1];
@@ -71,7 +73,7 @@ class TellingStretch {
   float value_of(double entry) const { return value_at({low_, high_}, entry / double(entries_ - 1)); }
 
   static constexpr double margin = 0.05;
-  static constexpr float flat = 1e-5F;  ///< what changes by less tells nothing
+  static constexpr float flat = 1e-5F;  ///< smaller changes do not determine a value
 
   float low_, high_;
   std::size_t entries_;
@@ -89,7 +91,7 @@ std::optional<TellingStretch> TellingStretch::of(const volume::TransferFunction&
       const auto at = [&](std::size_t entry) { return sign * table.entries[entry][channel]; };
       for (std::size_t first = 0, last = 0; last + 1 < table.entries.size(); ++last) {
         if (at(last + 1) < at(last) - flat) first = last + 1;
-        // What is flat before it rises tells nothing.
+        // A flat part before the rise does not determine the value.
         if (at(last + 1) <= at(first) + flat) first = last + 1;
         if (at(last + 1) - at(first) <= most || at(last + 1) <= at(last) + flat) continue;
         most = at(last + 1) - at(first);
@@ -100,7 +102,7 @@ std::optional<TellingStretch> TellingStretch::of(const volume::TransferFunction&
   return best;
 }
 
-/// Of the rays in some rows that go far enough along `axis`.
+/// Adds the ends of those rays in some rows whose path is longest along `axis`.
 void add_ends(FieldProbe& probe, const TellingStretch& stretch, const RaysThroughBox& rays, std::size_t axis,
               bool premultiplied_already, std::vector<RayEnds>& ends) {
   for (int band = 0; band < ramp_bands; ++band) {
@@ -127,8 +129,8 @@ void add_ends(FieldProbe& probe, const TellingStretch& stretch, const RaysThroug
   }
 }
 
-/// Steps of one length where the texture's axes are `axes` long: about so many to a unit as the ways tell, and
-/// then exactly, by the number that each ray has.
+/// Returns steps of one length where the texture's axes are `axes` long. Their number per unit comes
+/// approximately from the ends of the paths, and then exactly from the number of samples on each ray.
 std::optional<volume::RaySteps> steps_in(const std::vector<RayEnds>& ends, const volume::Vec3& axes) {
   std::vector<SampledWay> ways;
   for (const RayEnds& ray : ends) {
@@ -150,7 +152,7 @@ std::optional<volume::RaySteps> steps_in(const std::vector<RayEnds>& ends, const
 }  // namespace
 
 bool lie_on(const volume::RaySteps& steps, std::span<const RayEnds> ends) {
-  constexpr double colours_of_8_bits = 0.3;  // of a step
+  constexpr double colours_of_8_bits = 0.3;  // of a step: imprecision of 8-bit colours
   constexpr double rounding = 0.05;
   constexpr double most_elsewhere = 0.05;
   const auto elsewhere = std::ranges::count_if(ends, [&](const RayEnds& ray) {

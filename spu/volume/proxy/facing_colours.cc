@@ -18,13 +18,14 @@ using volume::Rgba;
 
 namespace {
 
-/// Of SlopeProbe's least rises: about as much as from entry to entry of the table. Gentler slopes have shorter
-/// normals in programs that keep these from a division by zero (SlopeProbe::over_steep).
+/// In units of SlopeProbe's least rise: about the difference between neighbouring entries of the table. In
+/// programs that keep normals from a division by zero, gentler slopes have shorter normals
+/// (SlopeProbe::over_steep).
 constexpr double gentle = 1;
 
-/// Slopes across the face by which a ray enters, from one side.
+/// Colours over a field that rises perpendicularly to the face by which a ray enters, in one direction.
 struct FacingColours {
-  std::vector<Rgba> colours;  ///< of values
+  std::vector<Rgba> colours;  ///< by value
   double cosine = 1;          ///< between the slopes' normal and the direction to the eye
 
   double brightness() const {
@@ -34,8 +35,8 @@ struct FacingColours {
   }
 };
 
-/// From the side that is brighter: some programs' normals point to where the field rises. Of the ray through
-/// the middle of the view; empty where there is none.
+/// Returns the colours for the brighter of both directions: in some programs, normals point to where the field
+/// rises. Uses the ray through the middle of the view; empty if there is none.
 FacingColours facing_colours(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box,
                              const March& march, const std::vector<float>& values) {
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
@@ -56,7 +57,8 @@ FacingColours facing_colours(const MarchContext& measured, FieldProbe& probe, co
   return facing;
 }
 
-/// The base colour that `light` shows so, over its opacity; null: brighter ones would look alike.
+/// Returns the base colour, over its opacity, that `light` shows as `lit`; null if brighter ones would look
+/// alike.
 std::optional<Tint> unlit(volume::Light light, double cosine, const Tint& lit) {
   constexpr double darkest = 1e-3;
   constexpr double rounding = 0.01;

@@ -74,7 +74,7 @@ FieldProbe::FieldProbe(const MarchContext& measured)
   for (const SampledTexture& other : pipeline.others) {
     if (!is_depth_texture(gl_, other)) continue;
     saved_.borrow_texture(GL_TEXTURE_2D, other.unit);
-    // Of the same size: some programs fetch texels by the place of the fragment.
+    // Of the same size: some programs fetch texels by fragment position.
     std::array<GLint, 2> size{};
     gl_.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &size[0]);
     gl_.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_HEIGHT, &size[1]);
@@ -86,7 +86,7 @@ FieldProbe::FieldProbe(const MarchContext& measured)
   show_white_gradient_tables();
 
   complete_ = measured.surfaces.bind_framebuffer(width, height) != 0;
-  // Which of the box's faces make fragments is the application's choice. If all do, the nearest counts.
+  // The application chooses which faces of the box produce fragments. If all do, the nearest counts.
   gl_.Enable(saved_.was_enabled(GL_CULL_FACE) ? GL_CULL_FACE : GL_DEPTH_TEST);
   gl_.GetIntegerv(GL_DEPTH_FUNC, &depth_function_);
   gl_.DepthFunc(GL_LESS);
@@ -103,8 +103,9 @@ FieldProbe::~FieldProbe() {
   gl_.DeleteTextures(GLsizei(textures_.size()), textures_.data());
 }
 
-/// Whether the volume's own texels can hold all of it. What a driver makes of bytes may differ from multiples
-/// of 1/255 in the last bit, and a program that compares a sample with such a number sees that.
+/// Whether texels of the volume's own 8-bit type can hold all of these. Drivers may convert bytes to values
+/// that differ from multiples of 1/255 in the last bit, which changes the result of programs that compare a
+/// sample with one.
 bool FieldProbe::of_bytes(std::span<const float> texels) const {
   constexpr float bytes = 255;
   return texture_.type == volume::TexelType::u8 && std::ranges::all_of(texels, [](float value) {
@@ -117,7 +118,7 @@ void FieldProbe::show(const std::array<float, 8>& corners) {
 }
 
 void FieldProbe::show(std::span<const float> texels, const std::array<int, 3>& size, GLint filter) {
-  // A texture for every field: changing one that is in use would wait for the draw.
+  // A new texture for every field: changing one that is in use would wait for the draw.
   GLuint name = 0;
   gl_.ActiveTexture(GLenum(GL_TEXTURE0 + run_.pipeline().volume.unit));
   gl_.GenTextures(1, &name);
@@ -269,7 +270,7 @@ std::array<double, 2> FieldProbe::middle_of_pixel_at(double x, double y) const {
 
 std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::size_t wanted,
                                                const std::function<void(std::size_t)>& show_field) {
-  // Every draw puts the one pixel that is looked at to a place of its own, so that one read gets them all.
+  // Every draw puts its one pixel to a place of its own, so that one read returns them all.
   const int px = std::clamp(int(std::floor((x + 1) / 2 * fine_)), 0, fine_ - 1);
   const int py = std::clamp(int(std::floor((y + 1) / 2 * fine_)), 0, fine_ - 1);
   const int columns = std::max(1, free_.width);
@@ -294,7 +295,7 @@ std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::size_t w
     std::vector<volume::Rgba> read_back(std::size_t(columns) * std::size_t(rows));
     gl_.ReadPixels(left, bottom, columns, rows, GL_RGBA, GL_FLOAT, read_back.data());
     colours.insert(colours.end(), read_back.begin(), read_back.begin() + std::ptrdiff_t(count));
-    // Those that were shown meanwhile, of which there may be hundreds.
+    // Delete the textures of these fields; there may be hundreds.
     gl_.DeleteTextures(GLsizei(textures_.size() - kept), textures_.data() + kept);
     textures_.resize(kept);
   }
@@ -310,11 +311,11 @@ std::vector<volume::Rgba> FieldProbe::sums_at(double x, double y, std::span<cons
   std::vector<volume::Rgba> sums = at(x, y, values);
   gl_.Disable(GL_BLEND);
   gl_.Enable(GL_DEPTH_TEST);
-  for (volume::Rgba& sum : sums) sum[3] -= no_fragment;  // which each sum began with
+  for (volume::Rgba& sum : sums) sum[3] -= no_fragment;  // the clear value, which each sum contains
   return sums;
 }
 
-/// A new texture, whose texels are not filtered and repeat.
+/// Binds a new texture in place of `texture`, unfiltered and repeating.
 void FieldProbe::bind_in_place_of(const SampledTexture& texture) {
   const BorrowedTexture place{texture.target, texture.unit};
   if (std::ranges::find(borrowed_, place) == borrowed_.end()) {
@@ -349,7 +350,7 @@ void FieldProbe::show_coordinate(const SampledTexture& texture) {
     gl_.TexParameteri(texture.target, axis, GL_CLAMP_TO_EDGE);
   std::vector<float> colours;
   colours.reserve(4 * std::size_t(width));
-  // The first and the last stand for the ends.
+  // The first and the last texel hold 0 and 1.
   for (int i = 0; i < width; ++i) {
     const float coordinate = i == 0 ? 0 : i == width - 1 ? 1 : (float(i) + 0.5F) / float(width);
     colours.insert(colours.end(), 4, coordinate);
@@ -363,7 +364,7 @@ void FieldProbe::show_coordinate(const SampledTexture& texture) {
 void FieldProbe::show_instead(const SampledTexture& texture, int width, int height,
                               std::span<const float> texels) {
   bind_in_place_of(texture);
-  // The same number in every component, whichever the program reads.
+  // The same scalar in every component, whichever one the program reads.
   std::vector<float> colours;
   colours.reserve(4 * texels.size());
   for (const float number : texels) colours.insert(colours.end(), 4, number);
@@ -390,7 +391,7 @@ void FieldProbe::show_own(const SampledTexture& texture) {
 
 void FieldProbe::give_back(const SampledTexture& texture) {
   if (std::erase(borrowed_, BorrowedTexture{texture.target, texture.unit}) == 0) return;
-  // With its sampler object: the texture's own filter may be one that it has no levels for.
+  // With its sampler object: the texture's own filter may need mipmap levels that it does not have.
   saved_.give_back_texture(texture.target, texture.unit);
 }
 
@@ -466,7 +467,7 @@ std::vector<bool> FieldProbe::kept_in(const volume::Rect& pixels, const volume::
 }
 
 std::vector<volume::Rgba> FieldProbe::in_place(int column, int row, int width, int height) {
-  // At its own place, so that whatever depends on the place of a fragment is as it will be.
+  // At their own positions, so that everything that depends on a fragment's position is as in the real draw.
   return drawn_into({viewport_[0], viewport_[1], viewport_[2], viewport_[3]}, {column, row, width, height});
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 using volume::Rgba;
 
-/// Rays shorter than this many steps have no sample, as they are counted.
+/// Returns the length, in steps, below which `rule` gives a ray no sample.
 double shortest_counted(const volume::RaySteps& rule, const std::optional<Jitter>& jitter) {
   if (rule.divided) return 1 - rule.rounding;
   return rule.first + (jitter ? std::max(jitter->steps_per_unit, 0.0) : 0.0);
@@ -26,8 +26,8 @@ Rgba ray_of_one_sample(const March& march, float value) {
   return march.shows_one_colour() ? sample : ray_of(march, sample, 1);
 }
 
-/// Two values by which a ray of one sample has colours that differ most; none where they hardly do. Whatever a
-/// ray without a sample shows, it is not both.
+/// Returns two values for which the colours of a ray of one sample differ most; null if they hardly differ.
+/// Whatever a ray without a sample shows, it cannot match both.
 std::optional<std::array<float, 2>> unlike_values(const March& march, const std::vector<float>& values) {
   constexpr float told_apart = 1e-4F;
   const auto farthest_from = [&](float value) {
@@ -42,7 +42,7 @@ std::optional<std::array<float, 2>> unlike_values(const March& march, const std:
   return std::array{one, other};
 }
 
-/// The rays of about half that many steps, in as many directions, by the length at the pixel that is drawn.
+/// Returns rays of about `counted` / 2 steps in several directions, with the length at the pixel that is drawn.
 std::vector<Ray> short_rays(const FieldProbe& probe, const RaysThroughBox& rays, const volume::RaySteps& rule,
                             double counted) {
   constexpr double shortest = 0.02;  // of a step: shorter rays may miss their pixel

@@ -16,7 +16,7 @@ bool geometry_inside(const volume::RenderRequest& request, const volume::Matrix4
     const volume::Vec4 clip = volume::transform_point(texture_to_clip, place);
     return near + (far - near) * (clip[2] / clip[3] + 1) / 2;
   };
-  // As far as 16 bits of depth tell: a plane that touches the box is not in it.
+  // Precision of 16-bit depth: a plane that touches the box is not in it.
   constexpr double touching = 1.0 / 65536;
   const volume::DepthImage& depth = *request.depth;
   for (int row = 0; row < depth.rect.height; ++row) {

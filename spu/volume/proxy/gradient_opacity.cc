@@ -29,8 +29,8 @@ namespace {
 const Refusal unknown_opacity{
     "opacity depends on how steep a gradient is in another way than by one table of its length"};
 
-/// Whether it is filtered linearly, without mipmaps, and its ends hold beyond. (Under GL_CLAMP they mix with
-/// the border.)
+/// Whether the table is filtered linearly, without mipmaps, and clamped to its edge. (Under GL_CLAMP the ends
+/// mix with the border.)
 bool is_plain_table(const GlContext& context, GLenum target) {
   const DispatchTable& gl = *context.gl;
   const GLint sampler = bound_sampler(context);
@@ -41,7 +41,7 @@ bool is_plain_table(const GlContext& context, GLenum target) {
          is(GL_TEXTURE_MAG_FILTER, GL_LINEAR) && texture_parameter(gl, target, 0, GL_TEXTURE_BASE_LEVEL) == 0;
 }
 
-/// One channel of texels, row by row, whose rows are alike; empty where they are not, or one is no part of 1.
+/// Returns one channel of texels whose rows are alike; empty if they are not, or if a texel is outside [0, 1].
 std::vector<float> factors_of(std::span<const Rgba> texels, std::size_t width, std::size_t channel) {
   std::vector<float> factors;
   for (std::size_t i = 0; i < texels.size(); ++i) {
@@ -54,8 +54,8 @@ std::vector<float> factors_of(std::span<const Rgba> texels, std::size_t width, s
   return factors;
 }
 
-/// One channel of the texels that are looked up by the first coordinate; empty where it cannot be told what is
-/// between or beyond them. The program's own texture is bound.
+/// Returns one channel of the texels, by the first coordinate; empty if values between or beyond the texels are
+/// unknown. The program's own texture must be bound.
 std::vector<float> factors_in(const GlContext& context, const SampledTexture& table, std::size_t channel) {
   constexpr GLint most_rows = 16;
   const DispatchTable& gl = *context.gl;
@@ -76,14 +76,13 @@ std::vector<float> factors_in(const GlContext& context, const SampledTexture& ta
   return factors_of(texels, std::size_t(std::max(width, 1)), channel);
 }
 
-/// Factors whose table is looked up at 1 by slopes of `steepest`.
+/// Returns the factors of a table that is looked up at 1 by slopes of `steepest`.
 GradientOpacity over_slopes(std::vector<float> factors, double steepest) {
   const double half_texel = 0.5 / double(factors.size());
   return {std::move(factors), half_texel * steepest, (1 - half_texel) * steepest};
 }
 
-/// One ray under tables of one colour: of every sample the opacity is the same, times what the gradient makes
-/// of it.
+/// One ray under tables of one colour: all samples have the same opacity, times the factor of their gradients.
 class FadedRay {
  public:
   FadedRay(FieldProbe& probe, SlopeProbe& slopes, const March& march, const LitRay& ray)
@@ -93,8 +92,8 @@ class FadedRay {
         ray_(ray),
         samples_(double(places_on_way(march.steps, ray.way.way).size())) {}
 
-  /// The optical depth of a sample that is looked up at `coordinate` under the table of coordinates; 1 is that
-  /// of a sample under the white table.
+  /// The optical depth of a sample that is looked up at `coordinate`, under the table of coordinates
+  /// (FieldProbe::show_coordinate), relative to that of a sample under the white table.
   double depth_at(double coordinate) const {
     return std::log1p(-ray_.plain_opacity * coordinate) / std::log1p(-ray_.plain_opacity);
   }
@@ -103,11 +102,12 @@ class FadedRay {
     int width = 1;  ///< in multiples of FieldProbe::split_unit
     double difference = 0;
   };
-  /// The samples' mean optical depth, likewise, on average over where stripes begin.
+  /// The samples' mean relative optical depth, averaged over shifts of the stripes; null if it cannot be
+  /// measured.
   std::optional<double> depth_over(const Stripes& stripes, int shifts) const;
-  /// What the ray shows of an even slope, premultiplied.
+  /// What the ray shows over a linear field, premultiplied.
   Rgba over(const Vec3& gradient, double steepness) const;
-  /// The opacity that `opacity` makes of it, in the space of `light`.
+  /// The ray's opacity over that field as `opacity` predicts it, in the space of `light`.
   double opacity_over(const Vec3& gradient, double steepness, const volume::Light& light,
                       const GradientOpacity& opacity) const;
   const Vec3& way() const { return ray_.way.way; }
@@ -154,26 +154,27 @@ double FadedRay::opacity_over(const Vec3& gradient, double steepness, const volu
   return 1 - through;
 }
 
-/// How a program looks gradients along one axis up.
+/// How a program looks up gradients along one axis.
 struct AxisLookup {
   double reach = 1;       ///< in texels of the volume
-  double coordinate = 0;  ///< in the table, of a slope of 1 per unit of texture space
+  double coordinate = 0;  ///< coordinate in the table of a slope of 1 per unit of texture space
 };
 
-/// Measured on stripes: samples within reach of where two stripes meet have a gradient. How many have one tells
-/// the reach, when all of them are looked up at the table's end; gentler gradients then tell the coordinate.
+/// Measures the lookup on stripes: samples within reach of a boundary between two stripes have a gradient.
+/// While all of these are looked up at the table's end, their number gives the reach; gentler gradients then
+/// give the coordinate.
 std::optional<AxisLookup> lookup_along(const FadedRay& ray, const SlopeProbe& slopes, std::size_t axis,
                                        const std::array<int, 3>& size, double range) {
   constexpr int shifts = 32;
   constexpr int few = 4;
   constexpr double steepest = 1e4;
   constexpr double wanted = 0.5;
-  // Several texels of the volume, or gradients would reach across.
+  // Stripes are several texels of the volume wide, or gradients would reach across them.
   FadedRay::Stripes stripes{axis, std::clamp(4 * FieldProbe::field_texels / size[axis], 32, 128),
                             steepest * range};
   const auto saturated = ray.depth_over(stripes, shifts);
   if (!saturated || !(*saturated > 0.002 && *saturated < 0.9)) return std::nullopt;
-  // What depth the samples at one coordinate come to.
+  // The coordinate at which the samples would come to this depth.
   const auto coordinate_of = [&](double depth) {
     double low = 0;
     double high = 1;
@@ -195,14 +196,14 @@ std::optional<AxisLookup> lookup_along(const FadedRay& ray, const SlopeProbe& sl
   if (!(coordinate > 0.05 && coordinate < 0.95)) return std::nullopt;
   const double part = *saturated * stripes.width * FieldProbe::split_unit / 2;
   const double texels = slopes.reach_in_stripes(axis, part);
-  // Whole texels or halves, but for what counting samples leaves open.
+  // Round to half texels where the error of counting samples permits.
   const double halves = std::round(2 * texels) / 2;
   const double reach = halves >= 0.5 && std::abs(texels - halves) < 0.15 ? halves : texels;
   return AxisLookup{reach, coordinate / stripes.difference * 2 * reach / size[axis]};
 }
 
-/// The slope, per unit of length of the light's space, that is looked up at the table's end; null where axes
-/// differ in it.
+/// Returns the slope, per unit of length of the light's space, that is looked up at the table's end; null if
+/// the axes disagree.
 std::optional<double> steepest_in_table(const LightSpace& space,
                                         std::span<const std::optional<AxisLookup>> axes) {
   constexpr double same = 0.03;
@@ -220,14 +221,14 @@ std::optional<double> steepest_in_table(const LightSpace& space,
   return sum / double(found.size());
 }
 
-/// Gradients as the table's coordinates measure them: of length 1 at its end.
+/// Gives `light` the reach of gradients, and the space in which a gradient at the table's end has length 1.
 void take_space(std::span<const std::optional<AxisLookup>> axes, const std::array<int, 3>& size,
                 volume::Light& light) {
   std::size_t known = 0;
   while (!axes[known]) ++known;
   light.space = {};
   for (std::size_t k = 0; k < 3; ++k) {
-    // Where the ray does not tell, texels are cubes.
+    // For axes that the ray does not show, assume cubic texels.
     const AxisLookup axis =
         axes[k].value_or(AxisLookup{axes[known]->reach, axes[known]->coordinate * size[known] / size[k]});
     light.space[4 * k] = 1 / axis.coordinate;
@@ -235,17 +236,17 @@ void take_space(std::span<const std::optional<AxisLookup>> axes, const std::arra
   }
 }
 
-/// Slopes that differ in direction and steepness.
+/// Gradients that differ in direction and length.
 constexpr std::array<Vec3, 4> directions{{{1, 0.4, -0.3}, {-0.2, 1, 0.5}, {0.3, -0.6, 1}, {1, 1, 1}}};
 
-/// By so much do slopes in `gradient` rise that are looked up at the table's end.
+/// Returns the steepness with which a slope in `gradient` is looked up at the table's end.
 double steepness_at_end(const FadedRay& ray, const Vec3& gradient, const volume::Light& light,
                         double steepest) {
   return steepest / LightSpace(light, ray.way()).slope(ray.slopes().rise(gradient, 1, light.reach).gradient);
 }
 
-/// Whether the ray's opacities are those of `opacity`, of slopes that are looked up at each of these
-/// coordinates.
+/// Whether the ray's opacities are as `opacity` predicts, for slopes that are looked up at each of
+/// `coordinates`.
 bool is_explained(const FadedRay& ray, const volume::Light& light, const GradientOpacity& opacity,
                   double steepest, std::span<const Vec3> gradients, std::span<const double> coordinates,
                   double same) {
@@ -260,7 +261,7 @@ bool is_explained(const FadedRay& ray, const volume::Light& light, const Gradien
   return true;
 }
 
-/// What the table of coordinates is.
+/// The gradient opacity of the table of coordinates.
 GradientOpacity coordinates_over_slopes(double steepest) {
   return {{0, 1}, 0, steepest};
 }
@@ -269,8 +270,8 @@ double steepest_of(const volume::Light& light) {
   return light.gradient_opacity.first + light.gradient_opacity.last;
 }
 
-/// Whether colours over opacities stay what they are under the white table: the program's own is bound, and
-/// then the white one.
+/// Whether colours over opacities are the same under the program's own table as under the white one, which is
+/// bound afterwards.
 bool keeps_colours(FieldProbe& probe, const FadedRay& ray, const volume::Light& light) {
   constexpr double same = 0.02;
   constexpr float tells = 0.05F;
@@ -298,7 +299,7 @@ volume::Light light_that_changes_nothing() {
 
 using AxisLookups = std::array<std::optional<AxisLookup>, 3>;
 
-/// None where no axis tells.
+/// Returns the lookups along all axes; null if no axis shows its lookup.
 std::optional<AxisLookups> lookups(const MarchContext& measured, const FadedRay& ray) {
   AxisLookups axes;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -308,7 +309,7 @@ std::optional<AxisLookups> lookups(const MarchContext& measured, const FadedRay&
   return axes;
 }
 
-/// Whether the light's gradients look as far as those that the table is looked up by.
+/// Whether the light's gradients reach as far as those that the table is looked up by.
 bool reaches_agree(const AxisLookups& axes, const volume::Light& light) {
   constexpr double same = 0.25;  // of a texel
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -317,9 +318,10 @@ bool reaches_agree(const AxisLookups& axes, const volume::Light& light) {
   return true;
 }
 
-/// Gives the lights the scale of the table, with the table of coordinates for factors; false where no scale
+/// Gives the lights the scale of the table, with the table of coordinates for factors. False if no scale
 /// explains what `ray`, a long one, and `brief`, of few dense samples, show under that table. (A program that
-/// corrects opacities for its step after it has faded them shows other ones where samples are dense.)
+/// applies gradient opacity before it corrects opacities for its step shows other ones where samples are
+/// dense.)
 bool take_scales(const AxisLookups& axes, const FadedRay& ray, const FadedRay& brief,
                  std::vector<volume::Light>& lights) {
   constexpr std::array few{0.25, 0.5};
@@ -336,11 +338,11 @@ bool take_scales(const AxisLookups& axes, const FadedRay& ray, const FadedRay& b
 }
 
 /// Gives the lights the factors of the channel that explains what the ray shows under the program's own table;
-/// false where none does.
+/// false if none does.
 bool take_factors(const MarchContext& measured, FieldProbe& probe, const SampledTexture& table,
                   const FadedRay& ray, March& march, std::vector<volume::Light>& lights) {
   constexpr std::array coordinates{0.0, 0.03, 0.15, 0.4, 0.8, 1.5};
-  // VTK reads the red one.
+  // VTK reads the red channel.
   for (const std::size_t channel : {0U, 3U, 1U, 2U}) {
     probe.show_own_gradient_tables();
     const std::vector<float> factors = factors_in(measured.context, table, channel);
@@ -356,7 +358,7 @@ bool take_factors(const MarchContext& measured, FieldProbe& probe, const Sampled
   return false;
 }
 
-/// A ray of so many samples under plain tables; none where there are none.
+/// Returns a ray of about `samples` samples under plain tables; null if there is none.
 std::optional<RayUnderPlainTables> plain_ray(const MarchContext& measured, FieldProbe& probe,
                                              const March& march, const RaysThroughBox& rays, double samples) {
   const Ray ray = ray_of_length(rays, march.steps, samples + march.steps.first - 0.5);
@@ -429,7 +431,7 @@ bool still_fades_by_gradient(const MarchContext& measured, FieldProbe& probe, co
   if (!plain) return false;
   SlopeProbe slopes(measured, probe, under_tables);
   const FadedRay ray(probe, slopes, march, *plain);
-  // Whatever the shape of the program's table, this one tells where slopes are looked up.
+  // The table of coordinates shows where slopes are looked up, whatever the shape of the program's own table.
   probe.show_coordinate(tables.front());
   const bool holds = is_explained(ray, light, coordinates_over_slopes(steepest_of(light)), steepest_of(light),
                                   std::span(directions).first(1), coordinates, 0.02);

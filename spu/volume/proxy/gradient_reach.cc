@@ -9,7 +9,7 @@
 
 namespace understudy::spu {
 
-/// Between stripes of nearly one value, samples are lit that have another stripe within their reach.
+/// Over stripes of nearly one value, samples with another stripe within their reach are lit.
 std::optional<double> gradient_reach_along(SlopeProbe& slopes, const LitRay& ray, const volume::Light& light,
                                            std::size_t axis) {
   constexpr double tells = 0.05;
@@ -34,13 +34,13 @@ std::optional<double> gradient_reach_along(SlopeProbe& slopes, const LitRay& ray
     const double part = (slopes.over_stripes(ray, axis, width)[channel] - plain[channel]) / contrast;
     return part * width * FieldProbe::split_unit / 2;
   };
-  // Narrow stripes tell a short reach better, and none of a quarter of their width.
+  // Narrow stripes measure a short reach better, but none beyond a quarter of their width.
   constexpr int wide = 64;
   constexpr int narrow = 16;
   double reach = reach_by(wide);
   if (reach < narrow * FieldProbe::split_unit / 4) reach = reach_by(narrow);
   const double texels = slopes.reach_in_stripes(axis, reach);
-  // Whole texels or halves, but for what counting samples leaves open.
+  // Round to half texels where the error of counting samples permits.
   const double halves = std::round(2 * texels) / 2;
   return halves >= 1 && std::abs(texels - halves) < 0.1 ? halves : texels;
 }

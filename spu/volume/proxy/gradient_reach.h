@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a program's gradients look from a sample, measured by the light that they make.
+// How far from a sample a program's gradients reach, measured by the light that they produce.
 #pragma once
 
 #include <array>
@@ -11,12 +11,12 @@
 
 namespace understudy::spu {
 
-/// In texels of the volume along `axis`; null where the ray does not show it.
+/// Returns the reach in texels of the volume along `axis`; null if the ray does not show it.
 std::optional<double> gradient_reach_along(SlopeProbe& slopes, const LitRay& ray, const volume::Light& light,
                                            std::size_t axis);
 
-/// In texels of the volume along each axis; axes that the ray does not show look as far as the others. Null:
-/// nearer or farther than is recognised (up to eight texels).
+/// Returns the reach in texels of the volume along each axis; axes that the ray does not show get the largest
+/// reach of the others. Null if a reach is outside the recognised range (0.2 to 8 texels).
 std::optional<std::array<double, 3>> gradient_reach(SlopeProbe& slopes, const LitRay& ray,
                                                     const volume::Light& light);
 

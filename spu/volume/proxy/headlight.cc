@@ -26,30 +26,31 @@ using volume::Rgba;
 
 namespace {
 
-constexpr int coarse_texels = 16;  ///< of fields that are looked at in many frames
+constexpr int coarse_texels = 16;  ///< of fields that are drawn in many frames
 constexpr int angles = 65;         ///< between normal and ray, from 0 to pi
 constexpr int responses = 1025;    ///< of volume::Light
 constexpr float another_opacity = 0.1F;
-constexpr double golden = 2.39996;  ///< radians: turns by it come close to no earlier one for long
+constexpr double golden = 2.39996;  ///< golden angle, in radians: its multiples stay apart for long
 
 const Refusal not_from_the_eye{"the light does not shine from the eye"};
 const Refusal depends_on_steepness{"colour or opacity depend on how steep a gradient is"};
 const Refusal another_colour{"slopes are shown in colours that no light makes of those of even fields"};
 
-/// What a ray shows of a slope.
+/// What a ray shows over a slope.
 struct SeenSlope {
   volume::Vec3 gradient{};    ///< in texture space
   double cosine = 0;          ///< between its normal and the direction to the eye
   std::vector<Tint> tints{};  ///< of the ray's values
 };
 
-/// A slope whose normal has this angle to the eye, and is turned so far about the ray.
+/// A slope to probe, by the angle of its normal to the eye and its turn about the ray, in radians.
 struct LookedAt {
   double angle = 0;
   double turn = 0;
 };
 
-/// Empty where one shows nothing, or another opacity than even fields.
+/// Returns what the ray shows over these slopes; empty if one shows nothing, or another opacity than constant
+/// fields.
 std::vector<SeenSlope> seen_slopes(SlopeProbe& slopes, const LitRay& ray, const LightSpace& directions,
                                    std::span<const LookedAt> looked_at, int texels = slope_texels) {
   std::vector<volume::Vec3> gradients;
@@ -69,7 +70,7 @@ std::vector<SeenSlope> seen_slopes(SlopeProbe& slopes, const LitRay& ray, const 
   return seen;
 }
 
-/// What `light` shows of a slope, value by value, once it is known how far gradients look.
+/// Returns what `light` predicts for a slope, value by value, given the reach of gradients.
 std::vector<Tint> expected_tints(const SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& steps,
                                  const volume::Light& light, const SeenSlope& seen, int texels = slope_texels) {
   const LightSpace directions(light, ray.way.way);
@@ -84,7 +85,7 @@ std::vector<Tint> expected_tints(const SlopeProbe& slopes, const LitRay& ray, co
   return tints;
 }
 
-/// Slopes at a few angles to the eye, each turned about the ray; empty where there is nothing to see.
+/// Returns slopes at a few angles to the eye, each turned about the ray; empty if nothing is visible.
 std::vector<std::vector<SeenSlope>> turned_slopes(SlopeProbe& slopes, const LitRay& ray,
                                                   const volume::Light& light) {
   constexpr std::size_t turns = 4;
@@ -99,8 +100,8 @@ std::vector<std::vector<SeenSlope>> turned_slopes(SlopeProbe& slopes, const LitR
   return turned;
 }
 
-/// How much slopes at one angle differ, in parts of the brightest of all; 0 where the angle to the eye alone
-/// decides.
+/// Returns by how much slopes at one angle differ, relative to the brightest of all; 0 if the angle to the eye
+/// alone decides.
 double difference_when_turned(const std::vector<std::vector<SeenSlope>>& turned) {
   double most = 1e-6;
   double differ = 0;
@@ -116,7 +117,7 @@ double difference_when_turned(const std::vector<std::vector<SeenSlope>>& turned)
 
 using Matrix = std::array<double, 9>;
 
-/// Whether two spaces differ by the unit of length alone, which no angle shows.
+/// Whether two spaces differ by their unit of length alone, which no angle shows.
 bool are_alike(const Matrix& a, const Matrix& b) {
   constexpr double same = 1e-3;
   const auto largest = [](const Matrix& m) {
@@ -128,8 +129,8 @@ bool are_alike(const Matrix& a, const Matrix& b) {
   return true;
 }
 
-/// Spaces in which the program may take gradients or rays: that in which its steps have one length, that in
-/// which texels are cubes, and that of the texture.
+/// Returns the spaces in which the program may take gradients or rays: that in which its steps have one length,
+/// that in which texels are cubes, and texture space.
 std::vector<Matrix> candidate_spaces(const MarchContext& measured, const March& march) {
   std::vector<Matrix> spaces;
   const auto add = [&](const Matrix& space) {
@@ -144,7 +145,7 @@ std::vector<Matrix> candidate_spaces(const MarchContext& measured, const March& 
   return spaces;
 }
 
-/// `light` with gradients and rays in one of these, and then with each in another.
+/// Returns `light` with gradients and rays in the same one of `spaces`, and then with each in another one.
 std::vector<volume::Light> in_all_spaces(volume::Light light, const std::vector<Matrix>& spaces) {
   std::vector<volume::Light> lights;
   for (const Matrix& space : spaces) {
@@ -164,12 +165,12 @@ std::vector<volume::Light> in_all_spaces(volume::Light light, const std::vector<
 
 struct LightInSpace {
   volume::Light light;
-  std::vector<std::vector<SeenSlope>> turned;  ///< what is seen there of slopes, by angle
-  double differ = 0;                           ///< by so much do those of one angle
+  std::vector<std::vector<SeenSlope>> turned;  ///< slopes as seen in that space, by angle
+  double differ = 0;                           ///< by how much slopes of one angle differ
 };
 
-/// The light in the spaces in which the angle to the eye comes close to deciding alone, the closest first.
-/// (Samples at the texture's ends turn with a slope as they like.)
+/// Returns the light in the spaces, up to three, in which the angle to the eye nearly decides alone, best
+/// first. (Nearly, because samples at the texture's ends have other normals.)
 std::vector<LightInSpace> in_likely_spaces(SlopeProbe& slopes, const LitRay& ray, const volume::Light& light,
                                            const std::vector<Matrix>& spaces) {
   constexpr double at_most = 0.3;
@@ -188,7 +189,7 @@ std::vector<LightInSpace> in_likely_spaces(SlopeProbe& slopes, const LitRay& ray
   return likely;
 }
 
-/// At cosines, of what is known at angles.
+/// Resamples a response from evenly spaced angles to evenly spaced cosines.
 std::vector<volume::LightResponse> by_cosine(const std::vector<volume::LightResponse>& by_angle) {
   std::vector<volume::LightResponse> response;
   for (int i = 0; i < responses; ++i) {
@@ -203,8 +204,8 @@ std::vector<volume::LightResponse> by_cosine(const std::vector<volume::LightResp
   return response;
 }
 
-/// Whether a slope looks as `light` says. Of VTK's light, and of 25 programs with light from the eye, colours
-/// differ by up to 0.008.
+/// Whether a slope looks as `light` predicts. For VTK's light, and for 25 programs with light from the eye,
+/// colours differ by up to 0.008.
 bool is_explained(const SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& steps,
                   const volume::Light& light, const SeenSlope& seen, int texels = slope_texels) {
   constexpr double same = 0.02;
@@ -225,9 +226,8 @@ bool shows_light(SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& 
   });
 }
 
-/// Whether a short ray shows the light as bright as it was measured on a long one. Of its samples more lie
-/// close to the faces, where normals are less sure: a highlight is another one there by what an angle makes of
-/// it.
+/// Whether a short ray shows the light as bright as it was measured on a long one. More of its samples lie
+/// close to the faces, where normals are less certain, so a highlight may differ by what a small angle changes.
 bool shows_light_as_bright(SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& steps,
                            const volume::Light& light, std::span<const LookedAt> looked_at) {
   constexpr double same = 0.02;
@@ -252,8 +252,8 @@ bool shows_light_as_bright(SlopeProbe& slopes, const LitRay& ray, const volume::
   return !seen.empty();
 }
 
-/// Of one ray, whatever the others show, going by slopes at angles from 0 to pi. What samples at the
-/// texture's ends add to it is taken away as the light so far says; without reach it stays.
+/// Fits the light to one ray's slopes at angles from 0 to pi, whatever other rays show. What samples at the
+/// texture's ends contribute is removed as `light` predicts; if it has no response yet, it stays.
 std::variant<volume::Light, Refusal> light_on(const SlopeProbe& slopes, const LitRay& ray,
                                               const volume::RaySteps& steps, const std::vector<SeenSlope>& seen,
                                               volume::Light light) {
@@ -275,8 +275,8 @@ std::variant<volume::Light, Refusal> light_on(const SlopeProbe& slopes, const Li
     if (!(fit.worst <= allowed * std::max(1.0, brightest(inside)))) return another_colour;
     by_angle.push_back(fit.response);
   }
-  // Light that is hardly seen may be one that wakes on steeper slopes, and a neighbour's value that colours
-  // show a little is none: what a fit may be off by tells them from each other only beyond twice of it.
+  // Light this faint may appear on steeper slopes only, or be no light at all but a neighbour's value that
+  // colours show a little. A fit that may be off by `same` distinguishes these only beyond twice that.
   constexpr float visible = 2 * same;
   if (light.even[0] > 0 && std::ranges::all_of(by_angle, [&](const volume::LightResponse& at) {
         return std::abs(at.diffuse - 1) < visible && std::abs(at.specular) < visible;
@@ -286,7 +286,7 @@ std::variant<volume::Light, Refusal> light_on(const SlopeProbe& slopes, const Li
   return light;
 }
 
-/// The light, and how far its gradients look: each is measured better by the other.
+/// Measures the light and the reach of its gradients in turn: each improves the other.
 std::variant<volume::Light, Refusal> light_and_reach(SlopeProbe& slopes, const LitRay& ray,
                                                      const volume::RaySteps& steps, volume::Light light,
                                                      bool coloured) {
@@ -298,7 +298,7 @@ std::variant<volume::Light, Refusal> light_and_reach(SlopeProbe& slopes, const L
   const std::vector<SeenSlope> seen = seen_slopes(slopes, ray, LightSpace(light, ray.way.way), looked_at);
   if (seen.empty()) return Refusal{"fields with a slope show nothing"};
   if (coloured) {
-    // Samples at the texture's ends mix what other angles show, and all of it is in the light's colours.
+    // Samples at the texture's ends mix in what other angles show, but all of it is in the light's colours.
     std::vector<std::vector<Tint>> tints;
     tints.reserve(seen.size());
     for (const SeenSlope& slope : seen) tints.push_back(slope.tints);
@@ -318,7 +318,7 @@ std::variant<volume::Light, Refusal> light_and_reach(SlopeProbe& slopes, const L
   return found;
 }
 
-/// The light that explains all that was seen in its space.
+/// Returns the light in that space, if it explains all slopes that were seen there.
 std::variant<volume::Light, Refusal> light_that_explains(SlopeProbe& slopes, const LitRay& ray,
                                                          const volume::RaySteps& steps,
                                                          const LightInSpace& in_space, bool coloured) {
@@ -333,7 +333,7 @@ std::variant<volume::Light, Refusal> light_that_explains(SlopeProbe& slopes, con
   return found;
 }
 
-/// By the first of the likely spaces, and the plainest of lights, that explain what is seen.
+/// Returns the plainest light, in the likeliest of the spaces, that explains what is seen.
 std::variant<volume::Light, Refusal> light_in_any(SlopeProbe& slopes, const LitRay& ray,
                                                   const volume::RaySteps& steps,
                                                   const std::vector<LightInSpace>& likely,
@@ -348,7 +348,7 @@ std::variant<volume::Light, Refusal> light_in_any(SlopeProbe& slopes, const LitR
   return found;
 }
 
-/// Of the program's own colours.
+/// Measures the light with the program's own colours.
 std::variant<volume::Light, Refusal> light_on_own_ray(const MarchContext& measured, SlopeProbe& slopes,
                                                       const LitRay& ray, std::size_t axis_of_entry,
                                                       const March& march, const volume::Light& light) {
@@ -356,12 +356,12 @@ std::variant<volume::Light, Refusal> light_on_own_ray(const MarchContext& measur
   if (likely.empty()) return not_from_the_eye;
   if (!is_the_same_for_any_steepness(slopes, ray, LightSpace(likely.front().light, ray.way.way), axis_of_entry))
     return depends_on_steepness;
-  // Colours that are much alike tell less of the light's.
+  // Base colours that are much alike say little about the light's colours: try white first.
   constexpr std::array white_first{false, true};
   return light_in_any(slopes, ray, march.steps, likely, white_first);
 }
 
-/// Of a ray under plain tables, whose colours tell the light's.
+/// Measures the light under plain tables, whose colours determine the light's.
 std::variant<volume::Light, Refusal> light_on_plain_ray(const MarchContext& measured, SlopeProbe& slopes,
                                                         const LitRay& plain, const March& march,
                                                         const volume::Light& light) {
@@ -370,8 +370,8 @@ std::variant<volume::Light, Refusal> light_on_plain_ray(const MarchContext& meas
                       in_likely_spaces(slopes, plain, light, candidate_spaces(measured, march)), coloured);
 }
 
-/// The light, which explains the steepest slopes of the `plain` ray, with the guard that explains gentler ones;
-/// looked at under the program's own table, which may be looked up by more than was told.
+/// Returns `light`, which explains the steepest slopes of the `plain` ray, with the guard that explains gentler
+/// ones. Checks it under the program's own table, which may be looked up by more than is known.
 std::variant<volume::Light, Refusal> light_of_all_steepnesses(SlopeProbe& slopes, const LitRay& ray,
                                                               const LitRay& plain, std::size_t axis_of_entry,
                                                               const volume::RaySteps& steps,
@@ -382,8 +382,8 @@ std::variant<volume::Light, Refusal> light_of_all_steepnesses(SlopeProbe& slopes
   return *std::move(guarded);
 }
 
-/// A ray through the middle of the view, with a value that lets half of the light through: under the tables of
-/// `march`, or the program's own. None where nothing is translucent.
+/// Returns a ray through the middle of the view, with a value that lets half of the light through: under the
+/// plain tables of `march`, or the program's own tables. Null if nothing is translucent.
 std::optional<LitRay> ray_of_half_seen_value(const MarchContext& measured, FieldProbe& probe,
                                              SlopeProbe& slopes, const RaysThroughBox& rays,
                                              const March& march) {
@@ -400,7 +400,7 @@ std::optional<LitRay> ray_of_half_seen_value(const MarchContext& measured, Field
   return ray;
 }
 
-/// Those of `rays` on which values are translucent, with these.
+/// Returns those of `rays` on which values are translucent, with these values.
 std::vector<LitRay> lit_rays(SlopeProbe& slopes, std::vector<LitRay> rays) {
   std::vector<LitRay> seen;
   for (LitRay& ray : rays) {
@@ -410,7 +410,7 @@ std::vector<LitRay> lit_rays(SlopeProbe& slopes, std::vector<LitRay> rays) {
   return seen;
 }
 
-/// The same of long rays, or, where all values are dense, of brief ones.
+/// Likewise for long rays, or, if all values are dense, for brief ones.
 std::vector<LitRay> lit_rays(SlopeProbe& slopes, const RaysThroughBox& rays, const volume::RaySteps& steps) {
   std::vector<LitRay> seen = lit_rays(slopes, long_rays(rays, steps));
   return seen.empty() ? lit_rays(slopes, brief_rays(rays, steps)) : seen;
@@ -474,7 +474,7 @@ bool still_lit(const MarchContext& measured, FieldProbe& probe, const ProxyBox& 
   SlopeProbe slopes(measured, probe, march);
   const auto ray = ray_of_half_seen_value(measured, probe, slopes, rays, march);
   if (!ray) return !rays.way(rays.middle()[0], rays.middle()[1]);
-  // A light that has moved aside shows where slopes lean towards it: two of these are at right angles.
+  // A light that has moved aside shows on slopes that lean towards it: two of these lean at right angles.
   constexpr std::array<LookedAt, 3> looked_at{{{0.3, 1.9}, {1.2, 4.6}, {1.2, 4.6 + M_PI / 2}}};
   return shows_light(slopes, *ray, march.steps, *march.light, looked_at, coarse_texels);
 }

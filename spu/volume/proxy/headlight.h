@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that shines from the eye along every ray, as ray casters have it by default, measured on what they
-// draw.
+// Light that shines from the eye along every ray, the default of ray casters, measured on what they draw.
 //
-// Over a field that rises evenly all samples of a ray have one normal, and so one colour: that of the whole ray
-// over its opacity. By the angle between normal and ray it is a multiple of the colour that the same value has
-// in an even field (ambient and diffuse light), and something white (specular light). Both are measured angle
-// by angle, whatever the program's formula. Where even fields are black, because the material reflects no
-// ambient light, the colour of a slope that faces the eye takes their place (facing_colours.h).
+// Over a linear field, all samples of a ray have one normal, and therefore one colour: that of the whole ray
+// over its opacity. Depending on the angle between normal and ray, it is a multiple of the colour that the same
+// value has in a constant field (ambient and diffuse light), plus a white part (specular light). Both are
+// measured angle by angle, whatever the program's formula. If constant fields are black, because the material
+// reflects no ambient light, the colour of a slope that faces the eye is used instead (facing_colours.h).
 //
-// The first and the last samples of a ray have other normals (ray_normals.h), the more of them the fewer texels
-// the volume has. What they add is taken away once it is known how far gradients look.
+// The first and the last samples of a ray have other normals (ray_normals.h); the fewer texels the volume has,
+// the more samples these are. Their contribution is removed once the reach of gradients is known.
 #pragma once
 
 #include <cstddef>
@@ -23,22 +22,22 @@
 
 namespace understudy::spu {
 
-/// What `march`, whose steps and table are known, needs to show the light; or why it is another light. Two
-/// where no colour that is looked at is bright enough to tell whether the program clamps it. Where even fields
-/// are black, the table gets colours.
+/// Returns the light of `march`, whose steps and table are known, or why it is of another kind. Two lights if
+/// no colour that was probed is bright enough to show whether the program clamps it. If constant fields are
+/// black, the table gets colours.
 std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchContext& measured,
                                                                     FieldProbe& probe, const ProxyBox& box,
                                                                     March& march);
 
-/// The reason where a program's gradients are for something else than light.
+/// The reason for the refusal of a program whose gradients serve something else than light.
 inline constexpr const char* gradients_change_no_colour =
     "gradients are taken, but change no colour that is looked at";
 
-/// Whether a ray over two slopes looks as `march`, which has light, says.
+/// Whether a ray over a few slopes looks as `march`, which has light, predicts.
 bool still_lit(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box, const March& march);
 
-/// Whether its gradients look as far along these axes as `march`, which has light, says, as far as a ray shows
-/// it.
+/// Whether gradients reach as far along `axes` as the light of `march` has it; axes that the ray does not show
+/// pass.
 bool gradients_still_reach(const MarchContext& measured, const ProxyBox& box, const March& march,
                            std::span<const std::size_t> axes);
 

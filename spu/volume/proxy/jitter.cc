@@ -14,7 +14,7 @@ namespace {
 
 constexpr int largest_tile = 1024;  ///< edge, in texels
 
-/// More rays than that beside what a pattern says, and it was read in another way.
+/// If more rays than this deviate from a pattern, the texture is read in another way.
 constexpr double most_strayed = 0.01;
 
 struct Tile {
@@ -23,7 +23,7 @@ struct Tile {
   std::size_t texels() const { return std::size_t(width) * std::size_t(height); }
 };
 
-/// The size of a texture that may hold noise; none of tables, depths and images.
+/// Returns the size of a texture that may hold noise; null for tables, depths and images.
 std::optional<Tile> tile_of(const DispatchTable& gl, const SampledTexture& texture) {
   if (texture.target != GL_TEXTURE_2D || texture.texture == 0 || is_depth_texture(gl, texture))
     return std::nullopt;
@@ -54,7 +54,7 @@ const SampledTexture* sampled_at(const Run& run, GLint sampler_location) {
   return nullptr;
 }
 
-/// Counts by pixel; no count where a ray made no fragment.
+/// Counts of samples by pixel; 0 where a ray produced no fragment.
 class Counts {
  public:
   explicit Counts(const std::vector<CountedRay>& rays) {
@@ -69,7 +69,7 @@ class Counts {
   std::map<std::pair<int, int>, double> samples_;
 };
 
-/// The rays with `texels` in the place of the texture; none where they cannot be counted.
+/// Returns the rays counted with `texels` in place of the texture; empty if they cannot be counted.
 std::vector<CountedRay> counted_under(FieldProbe& probe, const SampledTexture& texture,
                                       const volume::RayOffsets& texels, const RayCounting& count) {
   probe.show_instead(texture, texels.width, texels.height, texels.steps);
@@ -78,13 +78,13 @@ std::vector<CountedRay> counted_under(FieldProbe& probe, const SampledTexture& t
   return all != nullptr ? std::move(*all) : std::vector<CountedRay>{};
 }
 
-/// What `texture` does to the rays that it moves; `own` were counted under its own numbers.
+/// Determines how `texture` moves rays; null if it does not. `own` were counted under its own numbers.
 std::optional<JitterFinding> jitter_by(const GlContext& context, FieldProbe& probe,
                                        const SampledTexture& texture, const RayCounting& count,
                                        const std::vector<CountedRay>& own,
                                        std::span<const volume::Vec3> spaces) {
-  constexpr double rounding = 0.6;      // half a step, and what the fit and the texture's own precision leave
-  constexpr double fewest_samples = 4;  // some programs take one where there is room for none
+  constexpr double rounding = 0.6;  // half a step, plus the errors of the fit and of the texture's precision
+  constexpr double fewest_samples = 4;  // some programs take one on rays too short for any
   const auto tile = tile_of(*context.gl, texture);
   if (!tile) return std::nullopt;
   volume::RayOffsets shown{tile->width, tile->height, std::vector<float>(tile->texels(), 0.0F)};
@@ -130,7 +130,8 @@ std::optional<JitterFinding> jitter_by(const GlContext& context, FieldProbe& pro
   return JitterFinding{{texture.sampler_location, steps}, fits};
 }
 
-/// By how much of a step more the samples of rays lie behind their beginning; how many less lie before a plane.
+/// Returns by how many steps the samples lie further from the rays' beginnings in `later` than in `sooner`:
+/// this many fewer lie in front of a plane.
 double steps_between(const std::vector<SplitRays>& sooner, const std::vector<SplitRays>& later,
                      const RaysThroughBox& rays) {
   double lost = 0;
@@ -140,7 +141,7 @@ double steps_between(const std::vector<SplitRays>& sooner, const std::vector<Spl
     for (std::size_t i = 0; i < sooner[s].rays.size(); ++i) {
       const SplitRay& ray = sooner[s].rays[i];
       const auto way = rays.way(ray.place[0], ray.place[1]);
-      // At either end of a ray there is nothing left to lose.
+      // Close to either end of a ray, there are no samples left to lose.
       if (!way || ray.before < 2 || ray.samples - ray.before < 2) continue;
       const double fewer = ray.before - later[s].rays[i].before;
       lost += (*way)[axis] > 0 ? fewer : -fewer;

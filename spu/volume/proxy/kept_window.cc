@@ -12,7 +12,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Places in [-1,1]^2 around which the box may be seen, that of its middle first.
+/// Returns places in [-1,1]^2 around which the box may be seen, that of its middle first.
 std::vector<std::array<double, 2>> places_to_enlarge(const RaysThroughBox& rays) {
   constexpr int to_each_side = 4;
   std::vector<std::array<double, 2>> places{rays.middle()};
@@ -23,12 +23,13 @@ std::vector<std::array<double, 2>> places_to_enlarge(const RaysThroughBox& rays)
   return places;
 }
 
-/// Whether every ray of the square of this half edge around a place has a good way through the box.
+/// Whether every ray of the square of this half edge around a place has a long enough path through the box.
 bool is_covered(const RaysThroughBox& rays, const std::array<double, 2>& place, double half) {
   if (std::abs(place[0]) + half > 1 || std::abs(place[1]) + half > 1) return false;
   const auto middle = rays.way(place[0], place[1]);
   if (!middle) return false;
-  // What the box covers is convex. Near its rim rays are so short that programs discard them for that.
+  // The box covers a convex area, so the corners suffice. Near its rim rays are so short that programs may
+  // discard them.
   constexpr double long_enough = 0.25;
   for (const double x : {place[0] - half, place[0] + half}) {
     for (const double y : {place[1] - half, place[1] + half}) {
@@ -39,7 +40,7 @@ bool is_covered(const RaysThroughBox& rays, const std::array<double, 2>& place, 
   return true;
 }
 
-/// A viewport in which the box covers all pixels of the application's.
+/// Returns a viewport in which the box covers all pixels of the application's; null if it would be too large.
 std::optional<volume::Rect> enlarged_viewport(const FieldProbe& probe, const RaysThroughBox& rays) {
   constexpr double finer = 0.8;
   const auto places = places_to_enlarge(rays);
@@ -55,7 +56,7 @@ std::optional<volume::Rect> enlarged_viewport(const FieldProbe& probe, const Ray
   }
 }
 
-/// Pixels from `first` to before `last` of a row or column.
+/// Pixels [first, last) of a row or column.
 struct Interval {
   int first = 0;
   int last = 0;
@@ -68,11 +69,11 @@ class KeptPixels {
  public:
   KeptPixels(FieldProbe& probe, const volume::Rect& enlarged) : probe_(probe), enlarged_(enlarged) {}
 
-  /// The field that shows fragments, and a row in which some are kept.
+  /// Finds the field that shows fragments, and returns a row in which some are kept; null if there is none.
   std::optional<int> find_row(const std::array<float, 2>& range) {
     for (const float value : {range[1], (range[0] + range[1]) / 2, range[0]}) {
       value_ = value;
-      // Halves, quarters, …: a view may be a small part of its window.
+      // Halves, quarters, and so on: a view may be a small part of its window.
       for (int parts = 2; parts <= 32; parts *= 2) {
         for (int part = 1; part < parts; part += 2) {
           const int y = probe_.height() * part / parts;
@@ -83,12 +84,12 @@ class KeptPixels {
     return std::nullopt;
   }
 
-  /// Null: what is kept has holes.
+  /// Null if what is kept has holes.
   std::optional<Interval> row(int y) { return interval_in({0, y, probe_.width(), 1}); }
   std::optional<Interval> column(int x) { return interval_in({x, 0, 1, probe_.height()}); }
 
   /// Whether the rectangle of the intervals is what is kept, as far as its sides and a few lines through it
-  /// tell.
+  /// show.
   bool is_rectangle(const Interval& columns, const Interval& rows) {
     for (const double part : {0.0, 0.25, 0.75, 1.0}) {
       if (row(rows.at(part)) != columns || column(columns.at(part)) != rows) return false;

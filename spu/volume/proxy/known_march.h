@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is remembered of the ray caster of one volume.
+// What is stored about the ray caster of one volume.
 #pragma once
 
 #include <optional>
@@ -15,29 +15,29 @@
 
 namespace understudy::spu {
 
-/// A march whose table was measured, value by value.
+/// A march whose table was measured value by value.
 struct MeasuredMarch {
   March march;
   MarchInputs inputs;
-  std::vector<TableContents> tables;  ///< of samples
+  std::vector<TableContents> tables;  ///< those that samples look up
 };
 
 struct KnownMarch {
   std::optional<March> march;
-  int box_changes = 0;  ///< so often another box was drawn than the one that was taken for the whole texture
-  MarchInputs inputs;   ///< what the march was found under
-  /// The last few. The march is derived from the last one, by a factor of its steps, or equals it. (From march
-  /// to march, opacities that long steps make nearly 1 would be lost.)
+  int box_changes = 0;  ///< how often the box that was drawn differed from the one taken for the whole texture
+  MarchInputs inputs;   ///< of the last image that used the march
+  /// The last few. The march equals the last one, or is derived from it by a factor of its steps. (If it were
+  /// derived from march to march, opacities that long steps make nearly 1 would be lost.)
   std::vector<MeasuredMarch> measured;
-  std::vector<MeasuredWay> ways;  ///< of views that left open what its steps are, under the same steps
+  std::vector<MeasuredWay> ways;  ///< of views that left its steps open, under the same steps
   CameraFollowers followers;
   volume::Matrix4 camera{};          ///< of its last image, from texture to clip coordinates
-  volume::Matrix4 earlier_camera{};  ///< of the one before
-  /// Where its program keeps fragments, where it discards any by their place; the last one measured last.
+  volume::Matrix4 earlier_camera{};  ///< of the image before that
+  /// Where its program keeps fragments, if it discards any by position; the one measured last is at the end.
   std::vector<KeptWindow> kept;
 };
 
-/// The input of the fragment stage that addressed the volume; empty: none is known.
+/// The input of the fragment stage that addressed the volume; empty if none is known.
 inline std::string known_coordinate(const KnownMarch& known) {
   return known.march ? known.march->space.input : std::string();
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t channels = 3;
 
-/// Base colours are told apart where they differ by more than this part of themselves.
+/// Base colours are distinguished if their deviation exceeds this fraction of their mean.
 constexpr double least_spread = 0.05;
 
 /// y = offset + factor x, by least squares.
@@ -22,7 +22,7 @@ struct Line {
   double offset = 0;
 };
 
-/// Means of pairs, and their squares and products about them.
+/// Means, variance and covariance of pairs.
 class PairSums {
  public:
   void add(double x, double y) {
@@ -42,13 +42,13 @@ class PairSums {
   double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
 };
 
-/// What one angle makes of the base colours, channel by channel: a multiple, and what is added.
+/// What light at one angle makes of the base colours, channel by channel: a multiple, and an added part.
 struct SeenLight {
   Tint factor{};
   Tint added{};
 };
 
-/// What is seen by the base colour, channel by channel.
+/// Sums of what is seen against the base colour, channel by channel.
 std::array<PairSums, channels> sums_by_channel(const std::vector<Tint>& base, const std::vector<Tint>& seen) {
   std::array<PairSums, channels> sums;
   for (std::size_t v = 0; v < base.size(); ++v) {
@@ -57,7 +57,7 @@ std::array<PairSums, channels> sums_by_channel(const std::vector<Tint>& base, co
   return sums;
 }
 
-/// With one multiple for all channels: they need not all tell.
+/// With one multiple for all channels: not every channel needs to vary.
 SeenLight of_white_diffuse(const std::array<PairSums, channels>& sums) {
   double square = 0;
   double product = 0;
@@ -86,7 +86,8 @@ double mean(const Tint& tint) {
   return (tint[0] + tint[1] + tint[2]) / channels;
 }
 
-/// Each channel's multiple by the mean of all, over the angles; null where all are one.
+/// Fits each channel's multiple, over the angles, to the mean of all channels; null if all are equal, or if the
+/// angles do not determine it.
 std::optional<std::array<Line, channels>> diffuse_colours(const std::vector<SeenLight>& angles) {
   constexpr double same = 0.03;
   std::array<Line, channels> lines;
@@ -100,7 +101,7 @@ std::optional<std::array<Line, channels>> diffuse_colours(const std::vector<Seen
     white = white && std::abs(lines[c].factor - 1) < same && std::abs(lines[c].offset) < same;
   }
   if (white) return std::nullopt;
-  // What is ambient and what is diffuse is a matter of choice: no channel's ambient light is less than none.
+  // The split into ambient and diffuse light is arbitrary: take the one whose least ambient channel is zero.
   double least = std::numeric_limits<double>::infinity();
   for (const Line& line : lines) {
     if (!(line.factor > 0)) return std::nullopt;
@@ -110,7 +111,7 @@ std::optional<std::array<Line, channels>> diffuse_colours(const std::vector<Seen
   return lines;
 }
 
-/// What is added in each channel, in parts of the mean of all; ones where it is white, or nothing.
+/// Returns what is added in each channel, relative to the mean of all; ones if it is white, or nothing.
 Tint highlight_colour(const std::vector<SeenLight>& angles) {
   constexpr double nothing = 0.02;
   constexpr double same = 0.03;
@@ -186,7 +187,7 @@ ResponseFit response_fit(const volume::Light& light, const std::vector<Tint>& ba
   const double ss = sum(&Row::specular, &Row::specular);
   const double dy = sum(&Row::diffuse, &Row::seen);
   const double sy = sum(&Row::specular, &Row::seen);
-  // Where all colours are one grey, nothing tells white from it, and nothing needs to.
+  // If all base colours are one grey, diffuse and specular light cannot be separated, and need not be.
   const double along = ds * ds / ss;
   const bool spread = dd - along > least_spread * least_spread * along;
   ResponseFit fit;

@@ -32,7 +32,7 @@ LightSpace::LightSpace(const volume::Light& light, const Vec3& way) : space_(lig
   axis[least] = 1;
   right_ = unit(volume::cross(to_eye_, axis));
   up_ = volume::cross(to_eye_, right_);
-  // Gradients go to the space by the inverse's transpose, here but for the determinant's size.
+  // Gradients transform to the space by the inverse transpose, here up to the determinant's magnitude.
   const Vec3 a = row_of(space_, 0);
   const Vec3 b = row_of(space_, 1);
   const Vec3 c = row_of(space_, 2);
@@ -47,7 +47,7 @@ Vec3 LightSpace::gradient(double angle, double turn) const {
   for (std::size_t i = 0; i < 3; ++i)
     normal[i] =
         std::cos(angle) * to_eye_[i] + std::sin(angle) * (std::cos(turn) * right_[i] + std::sin(turn) * up_[i]);
-  // Gradients are covectors: they come back to texture space by the transpose.
+  // Gradients are covectors: they transform back to texture space by the transpose.
   Vec3 gradient{};
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < 3; ++i) gradient[k] -= space_[3 * i + k] * normal[i];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The space in which a program measures the angles of its light, and directions in it as one ray sees them.
+// The space in which a program measures the angles of its light, and directions in it relative to one ray.
 #pragma once
 
 #include <array>
@@ -12,18 +12,18 @@ namespace understudy::spu {
 
 class LightSpace {
  public:
-  /// Of a light, whose `space` and `ray_space` are looked at; the ray goes along `way` in texture space.
+  /// Uses the light's `space` and `ray_space`; the ray goes along `way` in texture space.
   LightSpace(const volume::Light& light, const volume::Vec3& way);
 
-  /// In texture space, of a field that falls fastest at `angle` to the direction to the eye, turned about the
-  /// ray; its largest component is 1.
+  /// Returns the gradient, in texture space, of a field that falls fastest at `angle` to the direction to the
+  /// eye, turned about the ray; its largest component is 1.
   volume::Vec3 gradient(double angle, double turn) const;
 
-  /// Between the direction to the eye and the normal of a field with this gradient in texture space.
+  /// The cosine between the direction to the eye and the normal of a field with this gradient in texture space.
   double cosine(const volume::Vec3& gradient) const;
-  /// Of a field with this gradient, per unit of length of the light's space.
+  /// The slope of a field with this gradient, per unit of length of the light's space.
   double slope(const volume::Vec3& gradient) const;
-  /// Of one that rises along a texture axis.
+  /// The cosine for a field that rises along a texture axis.
   double cosine_across(std::size_t axis) const {
     volume::Vec3 gradient{};
     gradient[axis] = 1;

@@ -33,8 +33,8 @@ using volume::Rgba;
 
 namespace {
 
-/// For an extreme value, which does not tell how many samples it was taken of: one or two a texel, or one for
-/// each length of the shortest ray that has any.
+/// Returns likely rules for an extreme value, which does not show how many samples it was taken of: one or two
+/// per texel, or one per length of the shortest ray that has any.
 std::vector<volume::RaySteps> rules_for_extremes(const std::array<int, 3>& size, double shortest) {
   constexpr double none = 0.02;  // of a texel
   std::vector<volume::RaySteps> rules;
@@ -55,8 +55,8 @@ const Refusal samples_lie_elsewhere{
 
 constexpr const char* back_faces_show = "rays that begin at the back faces of the box show something, too";
 
-/// One measurement, from the composition of samples to their places and colours. Each step fills in its part of
-/// the march, or says why there is none.
+/// One measurement, from the composition of samples to their positions and colours. Each step fills in its part
+/// of the march, or returns why there is none.
 class MarchMeasurement {
  public:
   MarchMeasurement(const MarchContext& measured, const ProxyBox& box)
@@ -69,10 +69,10 @@ class MarchMeasurement {
     march_.from_inside = !box.cuts.empty();
   }
 
-  /// All but the light.
+  /// Measures all but the light.
   std::optional<Refusal> measure_samples();
   std::optional<Refusal> measure_light();
-  /// Every way to read what was measured, in the spaces whose boxes are known.
+  /// Returns all interpretations of what was measured, in the spaces whose boxes are known.
   MarchFinding marches(const std::vector<CoordinateSpace>& spaces,
                        const std::vector<std::optional<ProxyBox>>& boxes) const;
 
@@ -88,13 +88,13 @@ class MarchMeasurement {
   std::optional<Refusal> find_places();
   std::optional<Refusal> find_places_of_extremes();
   void find_first_samples();
-  /// The part of rays whose samples are not where a rule puts them, counted from where rays enter or leave the
-  /// box; null where it cannot be counted so.
+  /// Returns the fraction of rays whose samples are not where a rule puts them, counted from where rays enter
+  /// or leave the box; null if it cannot be counted so.
   std::optional<double> misplaced(const volume::RaySteps& rule, bool from_exit) const;
-  /// By the rule that explains most rays.
+  /// Likewise for the rule that explains most rays.
   double least_misplaced(bool from_exit) const;
   const volume::RaySteps& likeliest_rule() const;
-  /// Whether nodes can be asked for samples that are counted ahead, in such a box.
+  /// Whether nodes can render samples that are counted ahead in such a box.
   bool may_count_ahead(const volume::RaySteps& rule, const volume::Box& region) const;
   void add_lit_marches(March march, std::vector<March>& marches) const;
   void add_marches(const CoordinateSpace& space, const volume::Box& region, const volume::RaySteps& rule,
@@ -105,15 +105,14 @@ class MarchMeasurement {
   FieldProbe probe_;
   RaysThroughBox rays_;
   volume::RaySteps texels_;    ///< steps of one texel
-  std::vector<float> values_;  ///< all over the range
+  std::vector<float> values_;  ///< spread over the range
   std::vector<Rgba> through_;  ///< their colours on a ray through the middle
   March march_;
-  bool lit_ = false;                   ///< whether slopes have another colour than even fields
+  bool lit_ = false;                   ///< whether slopes have another colour than constant fields
   std::vector<volume::Light> lights_;  ///< any of which may be the program's
   std::vector<volume::RaySteps> rules_;
-  std::vector<std::array<double, 9>> metrics_;  ///< by which rays were counted alike
-  std::size_t extremes_seen_ =
-      0;  ///< so many first ones of `rules_` were seen of an extreme, in the first space
+  std::vector<std::array<double, 9>> metrics_;  ///< of all fits, which explain the same counts
+  std::size_t extremes_seen_ = 0;  ///< number of leading `rules_` confirmed for an extreme, in the first space
   std::vector<SplitRays> split_;
 };
 
@@ -128,19 +127,19 @@ std::optional<Refusal> MarchMeasurement::find_composition() {
   if (!probe_.culls_faces() &&
       (blending.op == volume::Operator::min || blending.alpha.op == volume::Operator::min))
     return "front and back faces of the box are drawn under a minimum";
-  // Whatever the way through it, one value has one colour: samples are not composed.
+  // If one value has one colour, whatever the length of its path, samples are not composed.
   march_.extreme = volume::Operator::max;
   for (std::size_t i = 0; i < values_.size(); ++i) {
     if (!(largest_difference(through_[i], briefly[i]) <= 2e-3F)) march_.extreme.reset();
   }
-  // Of samples that are nearly opaque a few look like any number of them: shorter rays tell.
+  // A few nearly opaque samples look like any number of them: remove_background() tries shorter rays.
   if (one_alpha(through_, briefly)) march_.background = remove_background(measured_, probe_, rays_);
   if (march_.background) march_.extreme.reset();
   if (march_.extreme && shows_mean(probe_, box_, values_, through_)) {
     march_.extreme.reset();
     march_.mean = one_alpha(through_, briefly) ? Mean::of_colours : Mean::of_values;
   }
-  // Which face's fragment an opaque one is left of, RayCasterStage looks at.
+  // For opaque fragments, RayCasterStage checks which face's fragment remains.
   if (!march_.background && !only_nearest_shows(measured_, probe_, {middle[0], middle[1]}, values_, through_))
     return back_faces_show;
   if (march_.background) {
@@ -233,7 +232,8 @@ std::optional<Refusal> MarchMeasurement::find_steps_of_mean() {
 void MarchMeasurement::take_rules(const std::vector<StepFit>& fits) {
   for (const StepFit& fit : fits) {
     std::vector<volume::RaySteps> of_fit = rules_of(fit);
-    // A way in equal parts has as many wherever the first one begins.
+    // A path divided into equal parts has as many samples wherever the first one begins: only constant steps
+    // remain.
     if (march_.jitter || measured_.clipped || !box_.cuts.empty()) of_fit.resize(1);
     rules_.insert(rules_.end(), of_fit.begin(), of_fit.end());
   }
@@ -276,7 +276,7 @@ std::optional<Refusal> MarchMeasurement::measure_samples() {
 }
 
 void MarchMeasurement::find_first_samples() {
-  // Where planes cut the box, and where the eye is inside, samples may not lie beyond the end of their ray.
+  // If planes cut the box, or the eye is inside, samples must not lie beyond the end of their ray.
   if (march_.from_exit || measured_.clipped || !box_.cuts.empty()) return;
   for (volume::RaySteps& rule : rules_) {
     if (misplaced(rule, false).value_or(0) > most_misplaced) continue;
@@ -330,7 +330,7 @@ std::optional<Refusal> MarchMeasurement::find_places_of_extremes() {
 
 std::optional<Refusal> MarchMeasurement::find_places() {
   if (march_.extreme) return find_places_of_extremes();
-  // Where the eye is inside, rays of all directions begin at one place.
+  // With the eye inside, rays of all directions begin at one point.
   if (march_.mean || !box_.cuts.empty()) return std::nullopt;
   if (march_.jitter && !show_own_noise(measured_.run, probe_, *march_.jitter)) return std::nullopt;
   const std::vector<SeenValue> seen = seen_values(values_, through_);
@@ -339,8 +339,8 @@ std::optional<Refusal> MarchMeasurement::find_places() {
   if (march_.jitter || least_misplaced(false) <= misplaced_by_rounding) return std::nullopt;
   std::erase_if(rules_, [](const volume::RaySteps& rule) { return rule.counted_from.has_value(); });
   const double misplaced = least_misplaced(false);
-  // A way that is divided evenly comes close to steps from its end. In views in which both ends of rays are
-  // alike neither explains much more than the other.
+  // The samples of an evenly divided path come close to steps from its end. In views in which both ends of rays
+  // are alike, neither explains much more than the other.
   march_.from_exit = least_misplaced(true) <= std::min(misplaced / 3, most_misplaced);
   if (march_.from_exit || misplaced <= most_misplaced) return std::nullopt;
   march_.jitter = find_moving_jitter(measured_.context, measured_.run, probe_, split, rays_, rules_);
@@ -369,9 +369,9 @@ void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::B
   }
   march.steps.at_least_one = rule.at_least_one && may_count_ahead(rule, region);
   march.steps_seen = seen;
-  // The step that reaches the opaque geometry is usually taken before it is noticed.
+  // Programs usually take the step that reaches the opaque geometry before they detect it.
   march.steps.past_depth = measured_.ends_at_geometry ? 1 : 0;
-  // Planes end rays as opaque geometry does; where no ray leaves by one, both images are alike.
+  // Planes may end rays as opaque geometry does, or not; both images are alike if no ray leaves by a plane.
   for (const double past_planes : {march.steps.past_depth, 1 - march.steps.past_depth}) {
     if (!measured_.clipped && past_planes != march.steps.past_depth) continue;
     march.past_planes = past_planes;
@@ -380,7 +380,7 @@ void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::B
       continue;
     }
     marches.push_back(march);
-    // Fields of one value do not tell which extreme it is.
+    // Constant fields do not show which extreme it is.
     if (!march.extreme) continue;
     marches.push_back(march);
     marches.back().extreme = volume::Operator::min;
@@ -405,7 +405,8 @@ MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& space
       if (rules_[r].counted_from && !may_count_ahead(rules_[r], boxes[i]->region)) continue;
       const volume::RaySteps placed = march_.from_exit ? counted_from_exit(rules_[r], rays, probe_) : rules_[r];
       const auto misplaced = misplaced_part(split_, rays, placed);
-      // Fields must have shown that the box is the whole texture, and where samples lie that are counted ahead.
+      // Fields must have confirmed that the box is the whole texture, and where samples lie that are counted
+      // ahead.
       if (!misplaced && spaces[i].of_whole_box) continue;
       if (rules_[r].counted_from && !march_.jitter && !(misplaced && *misplaced <= misplaced_by_rounding))
         continue;
@@ -417,7 +418,7 @@ MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& space
   return marches;
 }
 
-/// In spaces that differ by an offset alone: steps have one length in all of them.
+/// Measures in spaces that differ by an offset alone: steps have one length in all of them.
 MarchFinding measure_in(const MarchContext& measured, const std::vector<CoordinateSpace>& spaces) {
   std::vector<std::optional<ProxyBox>> boxes;
   boxes.reserve(spaces.size());

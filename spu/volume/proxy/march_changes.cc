@@ -30,7 +30,7 @@ using volume::Rgba;
 
 namespace {
 
-/// Whether the samples of an extreme or of a mean lie where `march` says; empty where no field tells.
+/// Whether the samples of an extreme or of a mean lie where `march` places them; null if no field shows it.
 std::optional<bool> samples_lie_as_said(const MarchContext& measured, const March& march, const ProxyBox& box) {
   FieldProbe probe(measured);
   if (!probe.complete()) return std::nullopt;
@@ -97,7 +97,7 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
                                             const ProxyBox& box) {
   March changed = march;
   changed.from_inside = true;
-  if (march.shows_one_colour()) return changed;  // whose steps only rays from outside tell
+  if (march.shows_one_colour()) return changed;  // its steps can be measured from outside only
   FieldProbe probe(measured);
   if (!probe.complete() || !held_still(measured, probe, march))
     return "the driver offers no float framebuffer to probe with";
@@ -123,13 +123,13 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
 
 std::optional<March> with_longer_steps(const MarchContext& measured, const March& march, const ProxyBox& box,
                                        double factor, double offset) {
-  // Other values in every frame: the table is not measured otherwise.
+  // Other values in every frame, as the table is not measured again.
   const RaysLookedAt looked_at{.values = 16, .offset = offset};
   if (march.sum || march.steps.divided) return std::nullopt;
   March longer = march;
   for (double& number : longer.steps.metric) number /= factor;
   if (march.shows_one_colour()) {
-    // Its rays look alike whatever the number of their samples.
+    // Rays through constant fields look alike whatever the number of their samples.
     longer.steps_seen = samples_lie_as_said(measured, longer, box).value_or(false);
     if (!longer.steps_seen || !still_marches(measured, longer, box, looked_at)) return std::nullopt;
     return longer;
@@ -151,7 +151,7 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   std::vector<float> values;
   values.reserve(std::size_t(looked_at.values));
-  // Of entries: between two of them colours may have a corner, which a table that was measured does not have.
+  // Values of entries: between two of them, colours may have a corner that the measured table lacks.
   const double last_entry = double(march.table.entries.size()) - 1;
   for (int i = 0; i < looked_at.values; ++i) {
     const double entry = std::round((i + looked_at.offset) / looked_at.values * last_entry);
@@ -179,8 +179,8 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
     }
     return true;
   };
-  // At the box's silhouette, where short rays are, one may just miss its pixel, or a sample. Two that agree
-  // have not both a sample less of what is denser by just that much.
+  // At the box's silhouette, where short rays are, one may just miss its pixel, or a sample. Two rays that
+  // agree cannot both have one sample less, of a value that is denser by just that much.
   constexpr std::array short_lengths{2.5, 4.5, 7.5, 3.5};
   const std::ptrdiff_t enough = march.shows_one_colour() ? 1 : 2;
   const double first = march.steps.divided ? 0.5 : counted_from(march.steps);
@@ -194,14 +194,14 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   }
   if (looked_at.values > 0 && agreeing < enough) return false;
   if (march.light && !still_lit(measured, probe, box, march)) return false;
-  // Under the white table no other look would tell that a program has begun to fade, or has ceased.
+  // Under the white table, no other check shows that gradient opacity has been turned on or off.
   if (fades_by_gradient(march) == measured.tables_of_gradients.empty()) return false;
   if (fades_by_gradient(march) && !still_fades_by_gradient(measured, probe, box, march)) return false;
   if (is_black_where_even(march) && !values.empty() &&
       !shows_facing_colours(measured, probe, box, march, values))
     return false;
   if (march.shows_one_colour() || !looked_at.long_ray) return true;
-  // A long ray: its step may have another length in another direction.
+  // A long ray as well: steps may have another length in its direction.
   const auto middle = rays.middle();
   const int column = probe.column_at(middle[0]);
   const int row = probe.row_at(middle[1]);

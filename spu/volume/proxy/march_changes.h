@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a march that was measured still holds, and the march with what has changed: its table, its steps. A
-// few rays tell, where measuring everything again takes hundreds.
+// Checks whether a measured march still holds, and updates it when its table or its steps have changed. A few
+// rays suffice, where measuring everything again takes hundreds.
 #pragma once
 
 #include <cstddef>
@@ -13,40 +13,38 @@
 
 namespace understudy::spu {
 
-/// The march with the transfer function that the program has now; null when more than that has changed.
+/// Returns the march with the transfer function that the program has now; null if more than that has changed.
 std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box);
 
-/// The march with steps that are `factor` times as long, whose samples are corrected for their length, as is
-/// usual, or are what they were; null when neither is what the program shows, as far as fields tell. `offset`:
-/// of the values that are looked at, as RaysLookedAt has it.
+/// Returns the march with steps `factor` times as long, and samples that are corrected for this length, as is
+/// usual, or unchanged; null if the program shows neither, as far as fields reveal. `offset`: of the probed
+/// values, as in RaysLookedAt.
 std::optional<March> with_longer_steps(const MarchContext& measured, const March& march, const ProxyBox& box,
                                        double factor, double offset);
 
-/// The march with its steps measured once more, where the eye is inside and no ray is short; or why not.
+/// Returns the march with its steps measured again, where the eye is inside and no ray is short; or why not.
 std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const March& march,
                                             const ProxyBox& box);
 
-/// What still_marches() looks at.
+/// What still_marches() probes.
 struct RaysLookedAt {
-  int values = 8;  ///< evenly spread over the table, each on a short ray
-  double offset =
-      0.5;  ///< 0 to 1: of the space between two values, how far the first lies behind the beginning
+  int values = 8;       ///< evenly spread over the table, each on short rays
+  double offset = 0.5;  ///< 0 to 1: where the first value lies, in units of the distance between two
   bool long_ray = true;
 };
 
-/// Whether a few rays through constant fields still are as `march` says.
+/// Whether a few rays through constant fields still look as `march` predicts.
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box,
                    const RaysLookedAt& looked_at);
 
-/// How closely the places of samples are looked at, and of those that gradients are taken from.
+/// How closely the positions of samples are checked, and the reach of gradients.
 struct PlacesLookedAt {
-  int values = 32;  ///< of which two that tell are chosen
+  int values = 32;  ///< from which two that can be told apart are chosen
   SplitBands bands{};
   std::vector<std::size_t> axes_of_gradients{0, 1, 2};
 };
 
-/// Whether samples still lie on rays where `march` says, and their gradients look as far, as far as fields
-/// tell.
+/// Whether samples still lie where `march` places them, and gradients reach as far, as far as fields show.
 bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box,
                   const PlacesLookedAt& looked_at);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What nodes are asked to show for a march, and what their image becomes.
+// What nodes are asked to render for a march, and how their image is finished.
 #include <algorithm>
 #include <utility>
 
@@ -15,7 +15,7 @@ using volume::Rgba;
 
 namespace {
 
-/// As blending does in a normalised framebuffer, which clamps colours first.
+/// Multiplies as blending does in a normalised framebuffer, which clamps colours first.
 void multiply_by_alpha(volume::Image& image) {
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     for (std::size_t c = 0; c < 3; ++c)
@@ -29,8 +29,9 @@ void make_opaque_from(float limit, volume::Image& image) {
   }
 }
 
-/// The value travels in the first channel; alpha counts samples. Where the lowest one is invisible, blocks of
-/// nothing else add nothing to a maximum; to a minimum and a sum they do, and all values are `visible`.
+/// Writes the value to the first channel; alpha counts samples. If the lowest value is invisible, blocks of
+/// nothing else add nothing to a maximum. They do add to a minimum and a sum, so all values must be `visible`
+/// then.
 volume::TransferFunction ramp_over(const volume::TransferFunction& table, bool visible) {
   const Rgba& lowest = table.entries.front();
   visible |= std::any_of(lowest.begin(), lowest.end(), [](float x) { return x > 0; });
@@ -41,12 +42,12 @@ volume::TransferFunction ramp_over(const volume::TransferFunction& table, bool v
   return ramp;
 }
 
-/// Of `sampled` samples whose colours, or values in the first channel, add up to `sum`.
+/// Returns the mean of `sampled` samples whose colours, or values in the first channel, add up to `sum`.
 Rgba mean_of(const March& march, const Rgba& sum, float sampled) {
   const volume::TransferFunction& table = march.table;
   if (march.mean == Mean::of_values)
     return table_at(table, table.low + sum[0] / sampled * (table.high - table.low));
-  // Which all colours have.
+  // All entries have the same alpha.
   const float alpha = table.entries.front()[3];
   return {sum[0] / sampled, sum[1] / sampled, sum[2] / sampled, alpha};
 }
@@ -79,14 +80,14 @@ bool needs_finish(const March& march) {
 }
 
 void finish_image(const March& march, volume::Image& image) {
-  if (march.background) return;  // which only pixels have that the box covers
+  if (march.background) return;  // put behind later, and only where the box covers pixels
   if (march.opaque_at_limit) make_opaque_from(march.opacity_limit, image);
   if (march.alpha_twice) multiply_by_alpha(image);
   if (march.alpha_twice || march.opaque_at_limit) return;
   const volume::TransferFunction& table = march.table;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     Rgba colour{};
-    // Pixels without samples hold what changes no extreme.
+    // Pixels without samples hold the operator's neutral value.
     const float sampled = image.rgba[i + 3];
     if (march.mean) {
       if (sampled > 0)

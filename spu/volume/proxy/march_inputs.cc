@@ -34,7 +34,7 @@ bool is_scalar(GLenum type) {
   }
 }
 
-/// How a texture of 1 or 2 dimensions is looked up between texels and beyond its ends.
+/// Appends how a texture of 1 or 2 dimensions is looked up between texels and beyond its ends.
 void append_lookup(const GlContext& context, const SampledTexture& texture, std::vector<float>& values) {
   const DispatchTable& gl = *context.gl;
   if (texture.target != GL_TEXTURE_1D && texture.target != GL_TEXTURE_2D) return;
@@ -47,8 +47,8 @@ void append_lookup(const GlContext& context, const SampledTexture& texture, std:
   gl.ActiveTexture(GLenum(active));
 }
 
-/// Whether the uniform reaches where samples lie and when a ray ends, and decides about no fragment or colour.
-/// It may reach colours as a number: programs correct opacity by the step.
+/// Whether the uniform affects where samples lie and when a ray ends, and decides about no fragment or colour.
+/// It may affect colours as a number: programs correct opacity by the step.
 bool moves_samples_only(const ProgramFindings& says, const std::string& name) {
   bool moves = false;
   for (const program::UniformUse& use : says.ray->uniforms) {
@@ -60,8 +60,8 @@ bool moves_samples_only(const ProgramFindings& says, const std::string& name) {
   return moves;
 }
 
-/// Whether the sampler may have a texture that the application draws into. Volumes and depth textures, instead
-/// of which probes show fields and the far plane, do not count.
+/// Whether the sampler may have a texture that the application draws into. Volumes and depth textures do not
+/// count: probes replace them by fields and the far plane.
 bool may_be_drawn(const MarchContext& measured, const ShareGroup& group, const std::string& sampler) {
   const DispatchTable& gl = *measured.context.gl;
   const Pipeline& pipeline = measured.run.pipeline();
@@ -105,7 +105,7 @@ MarchInputs march_inputs(const MarchContext& measured, const CoordinateSpace& sp
                   float(measured.texture.base)};
   inputs.fixed.push_back(pipeline.target.floating ? 1.0F : 0.0F);
   inputs.fixed.push_back(pipeline.blending.replaces ? 1.0F : 0.0F);
-  // Which faces make fragments shows only on rays that are looked at, as what varies is.
+  // Which faces produce fragments shows only when rays are probed, so it counts as varying.
   GLint culled = 0;
   GLint front = 0;
   gl.GetIntegerv(GL_CULL_FACE_MODE, &culled);
@@ -122,7 +122,7 @@ MarchInputs march_inputs(const MarchContext& measured, const CoordinateSpace& sp
   const auto record = group.programs().program(pipeline.program);
   inputs.fixed.push_back(record ? float(record->link) : 0.0F);
   for (const StageUniform& uniform : measured.stages.uniforms) {
-    if (tells_cuts(uniform.name)) continue;  // measured without
+    if (tells_cuts(uniform.name)) continue;  // measured with the cuts lifted
     const std::size_t before = inputs.fixed.size();
     const bool scalar = is_scalar(uniform.type);
     if (!scalar) inputs.begin_vector(uniform.name, chooses_colours(says, uniform.name));
@@ -132,7 +132,7 @@ MarchInputs march_inputs(const MarchContext& measured, const CoordinateSpace& sp
       inputs.steps.push_back(before);
   }
   for (const SampledTexture& other : pipeline.others) {
-    if (group.is_rendered_to(other.texture)) {  // the opaque geometry's depth, or a table that is drawn
+    if (group.is_rendered_to(other.texture)) {  // the opaque geometry's depth, or a table that is rendered to
       varies("a texture that is drawn", never_equal);
       continue;
     }

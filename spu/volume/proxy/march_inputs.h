@@ -14,70 +14,71 @@ namespace understudy::spu {
 
 class ShareGroup;
 
-/// What a march was measured under. While `fixed` stays, and a look at a few rays says so, it holds: the camera
-/// is among the inputs that vary.
+/// What a march was measured under. It holds while `fixed` is unchanged and a check of a few rays confirms it:
+/// the camera is among the inputs that vary.
 struct MarchInputs {
   std::vector<float> fixed;
-  /// Of `fixed`, names and contents of tables that samples address: measured anew.
+  /// Indices into `fixed`: names and contents of tables that samples address. If these change, they are
+  /// measured anew.
   std::vector<std::size_t> tables;
-  /// Of `fixed`, uniforms that move samples, and decide about no fragment or colour.
+  /// Indices into `fixed`: uniforms that move samples, and decide about no fragment or colour.
   std::vector<std::size_t> steps;
-  /// First what the fragment stage has itself, and then what other_inputs.h adds.
+  /// First the fragment stage's own inputs, and then those that other_inputs.h adds.
   std::vector<float> varying;
-  std::size_t of_fragment_stage = 0;  ///< so many numbers of `varying`
-  bool unreadable = false;  ///< something that it depends on cannot be told: it may be another every time
-  /// Where each vector, matrix or number of `varying` begins, and what tells its name from others.
+  std::size_t of_fragment_stage = 0;  ///< size of the first part of `varying`
+  bool unreadable = false;  ///< something that the march depends on cannot be read, and may change at any time
+  /// Where each vector, matrix or scalar of `varying` begins, and a hash of its name.
   std::vector<std::size_t> varying_begins;
   std::vector<std::size_t> varying_names;
-  /// Likewise: whether vertices hand it on, one number in all of the draw.
+  /// Likewise: whether it is one scalar, passed to the fragment stage and constant over the draw.
   std::vector<bool> varying_may_be_step;
-  /// Likewise: whether it decides, by a branch, what samples look like or whether they are left out.
+  /// Likewise: whether it decides, by a branch, how samples look or whether they are skipped.
   std::vector<bool> varying_chooses;
-  /// Depth textures and their contents, instead of which probes show the far plane: opaque geometry's may be
-  /// copied in every frame.
+  /// Depth textures and their contents, which probes replace by the far plane: opaque geometry's may be copied
+  /// in every frame.
   std::vector<float> depths;
 
-  /// What is appended to `varying` from now on is one vector of that name.
+  /// Begins a vector of that name, to which everything belongs that is appended to `varying` from now on.
   void begin_vector(std::string_view name, bool chooses, bool may_be_step = false);
 };
 
-/// `says` has a finding about ray casters; `space` is where samples lie.
+/// Collects the inputs. `says` must have a finding about ray casters; `space` is the space of the samples.
 MarchInputs march_inputs(const MarchContext& measured, const CoordinateSpace& space, const ShareGroup& group,
                          const ProgramFindings& says);
 
-/// What a uniform holds that the program still has.
+/// Appends the value of a uniform, if the program still has it.
 void append_value(const MarchContext& measured, const StageUniform& uniform, std::vector<float>& values);
 
-/// Whether the uniform decides, by a branch, what colours are.
+/// Whether the uniform decides about colours, by a branch.
 bool chooses_colours(const ProgramFindings& says, const std::string& uniform);
 
-/// What decides, with the place in the window, which fragments the program discards. Never equal to another
-/// where that cannot be told.
+/// Returns the values that decide, together with the position in the window, which fragments the program
+/// discards. Holds a NaN, and so never equals another result, if that cannot be determined.
 std::vector<float> discard_inputs(const MarchContext& measured, const ShareGroup& group,
                                   const MarchInputs& inputs, const ProgramFindings& says);
 
-/// Whether the fragment stage has the same in all that it has itself.
+/// Whether the fragment stage's own inputs are the same.
 bool same_in_fragment_stage(const MarchInputs& before, const MarchInputs& now);
 
-/// How what other_inputs.h adds has changed, so far as rays may show it.
+/// How the inputs that other_inputs.h adds have changed, as far as rays may show it.
 enum class BesideChange : std::uint8_t {
   none,
-  with_camera,  ///< a number that may be a step
+  with_camera,  ///< a scalar that moves with the camera and may be a step
   alone,        ///< something that does not move with the camera
 };
 
-/// `follows` tells, number by number, what moves with the camera.
+/// `follows` states, number by number of `varying`, what moves with the camera.
 BesideChange change_beside_fragment_stage(const MarchInputs& before, const MarchInputs& now,
                                           const std::vector<bool>& follows);
 
-/// Whether nothing of `fixed` differs but the tables.
+/// Whether `fixed` differs in nothing but the tables.
 bool only_tables_differ(const MarchInputs& before, const MarchInputs& now);
 
-/// Whether a uniform differs that moves samples.
+/// Whether a uniform that moves samples differs.
 bool steps_differ(const MarchInputs& before, const MarchInputs& now);
 
-/// Where nothing of `fixed` differs but what the step of rays and the tables depend on: the factors by which
-/// the step may have grown, 1 where it has not. Empty: something else differs.
+/// If `fixed` differs only in uniforms that move samples, by factors below 64, and in tables: returns the
+/// factors by which the step may have grown, 1 if it has not. Otherwise empty.
 std::vector<double> step_factors(const MarchInputs& before, const MarchInputs& now);
 
 }  // namespace understudy::spu

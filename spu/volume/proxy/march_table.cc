@@ -23,12 +23,12 @@ namespace {
 
 /// Multiples of 1/255 fall on entries.
 constexpr int table_entries = 4 * 255 + 1;
-/// A ray that lets through less than this tells little of one sample.
+/// A ray more opaque than this says little about one sample.
 constexpr float opaque = 0.6F;
 
 const Refusal no_short_ray{"no short ray is in view: the opacity of one sample cannot be told"};
 
-/// The colours of one ray over fields of all values of the table.
+/// The colours of one ray over constant fields of all values of the table.
 struct RayOfTable {
   double samples = 0;
   std::vector<Rgba> colours;  ///< premultiplied
@@ -40,7 +40,7 @@ struct RayOfTable {
   }
 };
 
-/// Looks at rays for the table of one march.
+/// Probes rays for the table of one march.
 class TableRays {
  public:
   TableRays(const MarchContext& measured, FieldProbe& probe, const RaysThroughBox& rays,
@@ -55,11 +55,10 @@ class TableRays {
       values_.push_back(value_at(measured.range, double(i) / (table_entries - 1)));
   }
 
-  /// The ray in view whose number of samples comes closest; `within` a step, where in the step it ends.
+  /// Returns the ray in view whose number of samples comes closest; `within` a step, where in the step it ends.
   std::variant<RayOfTable, Refusal> of_samples(double samples, double within = 0.5) {
     const double wanted = samples - 1 + within + (rule_.divided ? 0.5 : rule_.first);
-    // An extreme is the same on every ray that has a sample, and a short one may have none: its step is
-    // unknown.
+    // An extreme is the same on every ray that has a sample; a short ray may have none, as the step is unknown.
     const auto middle = rays_.middle();
     const Ray ray = march_.shows_one_colour() ? Ray{middle[0], middle[1]} : ray_of_length(rays_, rule_, wanted);
     RayOfTable seen{march_.shows_one_colour() ? 1 : samples_of_length(rule_, ray.length), {}};
@@ -71,13 +70,13 @@ class TableRays {
     return seen;
   }
 
-  /// The ray through the middle of the view over fields that show something in a layer alone, which holds so
-  /// many of its samples or nearly so many: with the eye inside, all rays are long. None where no value is
-  /// clear, or samples are not composed by over one by one.
+  /// Returns the ray through the middle of the view, over fields that show something only in a layer, which
+  /// holds about `samples` of its samples: with the eye inside, all rays are long. Null if no value is
+  /// invisible, or if samples are not composed by over one by one.
   std::optional<RayOfTable> of_layer(int samples);
 
  private:
-  /// A value that shows nothing on the ray through the middle; null: there is none.
+  /// Returns a value that is invisible on the ray through the middle; null if there is none.
   std::optional<float> clear_value();
 
   FieldProbe& probe_;
@@ -102,7 +101,7 @@ std::optional<float> TableRays::clear_value() {
 }
 
 std::optional<RayOfTable> TableRays::of_layer(int samples) {
-  constexpr double fewest_texels = 3;  // of a step
+  constexpr double fewest_texels = 3;  // per sample
   constexpr double whole = 0.1;        // how far a count may be from a whole number
   if (march_.shows_one_colour() || march_.sum || march_.background || march_.alpha_twice) return std::nullopt;
   const auto middle = rays_.middle();
@@ -124,8 +123,8 @@ std::optional<RayOfTable> TableRays::of_layer(int samples) {
   if (!(layer.low > 0 && layer.high < 1) ||
       (layer.high - layer.low) * probe_.finest_texels() < fewest_texels * samples)
     return std::nullopt;
-  // The layer may hold one sample more or less, because where in a step samples lie is not known yet. Opacities
-  // of a translucent value on all of the ray and in the layer tell how many it holds.
+  // The layer may hold one sample more or less, because where samples lie within a step is not known yet. The
+  // opacities of a translucent value on the whole ray and in the layer give the number.
   const std::array translucent{march_.translucent};
   const auto seen_of = [&](const std::vector<Rgba>& fragments) {
     return reached(fragments.front()) ? std::log1p(-double(premultiplied(fragments.front(), premultiplied_)[3]))
@@ -142,9 +141,9 @@ std::optional<RayOfTable> TableRays::of_layer(int samples) {
   return seen;
 }
 
-/// How many samples the longer ray has, going by what the shorter one tells of each. Where rays are short, at
-/// the silhouette of the box, their length changes by a sample within a small part of a pixel, and counts of
-/// samples by the geometry are off by one. Null: the rays do not agree whatever the number.
+/// Returns how many samples the longer ray has, given what the shorter one shows of each. At the silhouette of
+/// the box, where rays are short, their length changes by a sample within a small part of a pixel, and counts
+/// of samples by the geometry are off by one. Null if the rays agree for no number.
 std::optional<double> samples_by(const March& march, const RayOfTable& shorter, const RayOfTable& longer) {
   constexpr int most_off = 2;
   constexpr double tolerance = 0.004;
@@ -158,7 +157,8 @@ std::optional<double> samples_by(const March& march, const RayOfTable& shorter, 
     for (std::size_t i = 0; i < shorter.colours.size() && samples >= 1; ++i) {
       const float seen = amount(march, shorter.colours[i]);
       const float through_longer = amount(march, longer.colours[i]);
-      // What does not grow with the way is a floor of the program's, and says nothing of a sample.
+      // An opacity that does not grow with the path is a floor set by the program, and says nothing about
+      // samples.
       if (through_longer < tells || through_longer > opaque || through_longer < 1.2F * seen) continue;
       const Rgba one = sample_of(march, shorter.colours[i], shorter.samples);
       difference += std::abs(amount(march, ray_of(march, one, samples)) - through_longer);
@@ -172,8 +172,8 @@ std::optional<double> samples_by(const March& march, const RayOfTable& shorter, 
   return best;
 }
 
-/// The shortest ray that shows anything, and agrees with the `longer` ones, whose samples are counted by it. At
-/// the box's silhouette, where rays are shortest, the one that was looked for may just miss its pixel.
+/// Returns the shortest ray that shows anything and agrees with the `longer` ones, whose samples it counts
+/// anew. At the box's silhouette, where rays are shortest, the one that was sought may just miss its pixel.
 std::variant<RayOfTable, Refusal> shortest_ray(TableRays& table, const March& march,
                                                std::vector<RayOfTable>& longer) {
   struct Length {
@@ -198,7 +198,7 @@ std::variant<RayOfTable, Refusal> shortest_ray(TableRays& table, const March& ma
   return no_short_ray;
 }
 
-/// The same where the eye is inside, and no ray in view is short.
+/// Likewise, if the eye is inside and no ray in view is short.
 std::variant<RayOfTable, Refusal> shortest_layer(TableRays& table, std::vector<RayOfTable>& longer) {
   auto shortest = table.of_layer(1);
   if (!shortest) return no_short_ray;
@@ -225,7 +225,7 @@ std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& p
   auto found = shortest_ray(table, march, longer);
   const auto* const in_view = std::get_if<RayOfTable>(&found);
   const bool short_enough = in_view != nullptr && in_view->samples <= most_samples_of_shortest;
-  // Over a layer there are gradients, and light changes colours.
+  // A layer has gradients, by which light would change colours.
   if (!short_enough && !measured.neighbours) {
     auto layer = shortest_layer(table, longer);
     if (std::holds_alternative<RayOfTable>(layer)) found = std::move(layer);
@@ -235,7 +235,7 @@ std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& p
   auto& entries = march.table.entries;
   entries.clear();
   for (const Rgba& colour : shortest.colours) {
-    // Whatever more a sample had, a ray of many would look alike.
+    // However much denser its samples were, a saturated ray of many would look alike.
     if (shortest.samples > most_samples_of_shortest && amount(march, colour) > saturated) return no_short_ray;
     entries.push_back(march.shows_one_colour() ? colour : sample_of(march, colour, shortest.samples));
   }
@@ -243,7 +243,7 @@ std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& p
     for (std::size_t i = 0; i < entries.size(); ++i) {
       const float seen = amount(march, ray.colours[i]);
       if (seen >= opaque) continue;
-      // An opacity that does not grow with the way is that floor.
+      // An opacity that does not grow with the path is the program's floor.
       const bool grows = seen > amount(march, shortest.colours[i]) + 1e-5F;
       entries[i] =
           grows ? sample_of(march, ray.colours[i], ray.samples) : Rgba{0, 0, 0, march.sum ? 1.0F : 0.0F};
@@ -254,7 +254,8 @@ std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& p
 
 namespace {
 
-/// Whether samples of this colour are not seen before the program's own background, however opaque they are.
+/// Whether samples of this colour are invisible in front of the program's own background, however opaque they
+/// are.
 bool looks_like_background(const March& march, const Rgba& sample) {
   constexpr double unseen = 1e-3;  // of a sample's opacity
   if (!march.background) return false;

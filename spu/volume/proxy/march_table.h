@@ -9,13 +9,13 @@
 
 namespace understudy::spu {
 
-/// Into the march's table, whose steps are those of `rule`. Several rays are asked, from one sample on: the
-/// longest that is not opaque tells best, because some programs keep a ray's opacity above a floor.
+/// Measures the march's table, for the steps of `rule`. Probes several rays, from one sample on. The longest
+/// ray that is not opaque measures best, because some programs keep a ray's opacity above a floor.
 std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& probe,
                                      const RaysThroughBox& rays, const volume::RaySteps& rule, March& march);
 
-/// Of the march's table, the value whose field lets most nearly half of the light through a ray that goes
-/// `way`; null: none lets a part through.
+/// Returns the value of the march's table whose constant field lets most nearly half of the light through a ray
+/// along `way`; null if none is translucent.
 std::optional<float> half_seen_value(const March& march, const volume::Vec3& way);
 
 }  // namespace understudy::spu

@@ -18,14 +18,14 @@ using volume::Rgba;
 
 namespace {
 
-/// Two values and the channel by which their colours are told apart best.
+/// Two values, and the channel in which their colours differ most.
 struct ValueContrast {
   std::size_t one = 0;
   std::size_t other = 0;
   std::size_t channel = 0;
   float difference = 0;
 
-  /// Which part of a mixture of both colours is that of the first.
+  /// The fraction of the first colour in a mixture of both.
   double part_of_one(const std::vector<Rgba>& colours, const Rgba& mixture) const {
     return (double(mixture[channel]) - double(colours[other][channel])) / double(difference);
   }
@@ -43,8 +43,8 @@ ValueContrast greatest_contrast(const std::vector<Rgba>& colours) {
   return greatest;
 }
 
-/// How many samples a fragment's ray has, of which one lies in a layer of another value. None where none does;
-/// 0 where that is no whole number.
+/// Returns how many samples a fragment's ray has, one of which lies in a layer of another value. Null if none
+/// does; 0 if the number is not whole.
 class SamplesByColours {
  public:
   SamplesByColours(const ValueContrast& contrast, const std::vector<Rgba>& colours)
@@ -64,10 +64,11 @@ class SamplesByColours {
   const std::vector<Rgba>& colours_;
 };
 
-/// The same of a mean of values, which is drawn for every number of samples: as the field of that one value.
+/// Likewise for a mean of values. Its colours for all numbers of samples are drawn in advance, as constant
+/// fields.
 class SamplesByValues {
  public:
-  /// Between `fewest` samples and 32 times as many the mean goes from `within` nearly to `outside`.
+  /// From `fewest` samples to 32 times as many, the mean goes from `within` nearly to `outside`.
   SamplesByValues(FieldProbe& probe, const std::array<double, 2>& ray, float within, float outside, int fewest)
       : fewest_(fewest) {
     std::vector<float> means{outside};
@@ -77,7 +78,7 @@ class SamplesByValues {
   }
 
   std::optional<double> operator()(const Rgba& fragment) const {
-    constexpr float nearly = 0.25F;  // of the difference between two numbers of samples
+    constexpr float nearly = 0.25F;  // of the difference between neighbouring numbers of samples
     const float to_none = largest_difference(fragment, by_samples_.front());
     if (!(to_none > largest_difference(by_samples_.back(), by_samples_.front()) / 2)) return std::nullopt;
     std::size_t told = 0;
@@ -85,7 +86,7 @@ class SamplesByValues {
       const float apart = std::min(largest_difference(by_samples_[i], by_samples_[i - 1]),
                                    largest_difference(by_samples_[i], by_samples_[i + 1]));
       if (!(largest_difference(fragment, by_samples_[i]) < nearly * apart)) continue;
-      if (told != 0) return 0;  // one colour, and several numbers
+      if (told != 0) return 0;  // one colour fits several numbers
       told = i;
     }
     return told == 0 ? 0 : double(fewest_) + double(told) - 1;
@@ -93,10 +94,10 @@ class SamplesByValues {
 
  private:
   int fewest_;
-  std::vector<Rgba> by_samples_;  ///< of no sample in the layer, of the fewest, of one more, …
+  std::vector<Rgba> by_samples_;  ///< with no sample in the layer, with the fewest, with one more, and so on
 };
 
-/// Counts the samples of rays that have one in a layer of another value.
+/// Counts the samples of rays that have one sample in a layer of another value.
 class LayerCounting {
  public:
   using Samples = std::function<std::optional<double>(const Rgba&)>;
@@ -104,8 +105,8 @@ class LayerCounting {
   LayerCounting(FieldProbe& probe, const ProxyBox& box, Samples samples)
       : probe_(probe), rays_(box.camera.texture_to_clip, box.region, box.cuts), samples_(std::move(samples)) {}
 
-  /// Through layers at several places, across each axis, until enough rays are counted: through a small window
-  /// few have a sample in one.
+  /// Uses layers at several places, across each axis, until enough rays are counted: in a small window, few
+  /// rays have a sample in one.
   std::vector<CountedRay> count(const volume::Box& region, float within, float outside) {
     constexpr std::size_t enough = 512;
     constexpr double most_broken = 0.1;
@@ -130,8 +131,7 @@ class LayerCounting {
   }
 
   void add_rows(int first_row, const FieldProbe::LayerField& field) {
-    constexpr double least_across =
-        0.3;  // of a ray's way: several samples of one that grazes the layer lie in it
+    constexpr double least_across = 0.3;  // of a ray's path: grazing rays have several samples in the layer
     const auto fragments = probe_.rows(first_row, 2, field);
     for (std::size_t i = 0; i < fragments.size(); ++i) {
       if (!reached(fragments[i])) continue;
@@ -152,7 +152,7 @@ class LayerCounting {
   RaysThroughBox rays_;
   Samples samples_;
   std::vector<CountedRay> counted_;
-  std::size_t broken_ = 0;  ///< rays whose number of samples is no whole one
+  std::size_t broken_ = 0;  ///< rays whose number of samples is not whole
 };
 
 }  // namespace
@@ -189,7 +189,7 @@ std::vector<CountedRay> counted_by_means(FieldProbe& probe, const ProxyBox& box,
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   for (const int fewest : {16, 4, 64}) {
     LayerCounting counting(probe, box, SamplesByValues(probe, rays.middle(), within, outside, fewest));
-    // One sample in the layer takes the mean as far as that many of the value `within` would.
+    // One sample in the layer changes the mean as much as that many of the value `within` would.
     auto counted = counting.count(box.region, outside + float(fewest) * (within - outside), outside);
     if (counted.size() >= fewest_rays) return counted;
   }

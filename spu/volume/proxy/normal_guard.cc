@@ -19,18 +19,18 @@ using volume::Rgba;
 
 namespace {
 
-/// Times the least rise that tells.
+/// In units of the least measurable rise.
 constexpr std::array<double, 9> steepnesses{0.25, 1, 4, 16, 64, 256, 1024, 4096, 16384};
 
-/// A slope of one steepness and angle: what the ray's values show, and what decides it.
+/// A slope of one steepness and angle: what the ray's values show, and what this depends on.
 struct SeenSteepness {
   std::vector<Tint> tints;
   std::vector<double> opacities;  ///< of the ray's samples
   EvenRise rise;
 };
 
-/// Slopes of all steepnesses that face the eye, and that lean away from it; empty where one shows nothing, or
-/// another opacity than even fields.
+/// Returns slopes of all steepnesses that face the eye, and that lean away from it; empty if one shows nothing,
+/// or another opacity than constant fields.
 std::vector<SeenSteepness> seen_steepnesses(SlopeProbe& slopes, const LitRay& plain,
                                             const LightSpace& directions, const volume::Light& light) {
   constexpr float same_opacity = 0.01F;
@@ -49,7 +49,8 @@ std::vector<SeenSteepness> seen_steepnesses(SlopeProbe& slopes, const LitRay& pl
   return seen;
 }
 
-/// By so much is a light wrong about what is seen, at most, in parts of what is bright.
+/// Returns the largest error of a light over all that was seen, relative to the brightest channel where this
+/// exceeds 1.
 double worst_difference(const LitRay& plain, const volume::RaySteps& steps, const LightSpace& directions,
                         const volume::Light& light, const std::vector<SeenSteepness>& all) {
   const std::vector<Tint> base = tints_of(plain.base);
@@ -71,10 +72,10 @@ struct GuardFit {
   double worst = 0;
 };
 
-/// Of this form, the slope that explains most: the best of powers of two, and then ever closer to it.
+/// Returns the best guard of this form: first among powers of two for its slope, then refined.
 GuardFit best_of_form(NormalGuard::Form form, double gentlest,
                       const std::function<double(const NormalGuard&)>& worst) {
-  // From a guard that hardly shows on the gentlest slope to one that takes a few hundredths of the steepest.
+  // From a guard that hardly shows on the gentlest slope to one that shortens the steepest by a few hundredths.
   constexpr int powers = 18;
   constexpr int refinements = 11;  // to a few ten thousandths
   const double least = gentlest / 64;

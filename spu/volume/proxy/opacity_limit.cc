@@ -17,8 +17,8 @@ using volume::Rgba;
 
 namespace {
 
-/// A ray of equal samples ended with the one that made it so opaque: the limit is above `before`, and no more
-/// than `ended`.
+/// A ray of equal samples that was terminated by the sample that made it so opaque: the limit is above
+/// `before`, and no more than `ended`.
 struct EndedRay {
   double before = 0;
   double ended = 1;
@@ -26,8 +26,8 @@ struct EndedRay {
   bool allows(double limit) const { return limit > before && limit <= ended; }
 };
 
-/// The number of fewest digits, which people write, of those that explain most rays; null where no number
-/// explains nearly all. (What a table's entry was measured to be may be another one where it is steep.)
+/// Returns, of the limits that explain most rays, the one of fewest digits, as people write them; null if no
+/// limit explains nearly all. (Where the table is steep, an entry may have been measured inexactly.)
 std::optional<float> explained_by(const std::vector<EndedRay>& rays) {
   constexpr std::size_t fewest = 3;
   constexpr double nearly_all = 0.8;
@@ -47,8 +47,8 @@ std::optional<float> explained_by(const std::vector<EndedRay>& rays) {
   return plainest;
 }
 
-/// How opaque a ray's samples are, by its colour: some programs write another alpha where their rays end. Null
-/// where the value is black.
+/// Returns how opaque a ray's samples are, by its colour: some programs write another alpha where they
+/// terminate rays. Null if the value is black.
 std::optional<double> opacity_by_colour(const Rgba& ray, const Rgba& sample) {
   const std::size_t c = std::size_t(std::max_element(sample.begin(), sample.begin() + 3) - sample.begin());
   if (!(sample[c] > 0)) return std::nullopt;
@@ -60,21 +60,22 @@ class EqualSamples {
  public:
   EqualSamples(const March& march, double samples) : samples_(samples), over_background_(march.background) {}
 
-  /// None where the ray did not end early, or its samples cannot be told. Both are premultiplied.
+  /// Null if the ray was not terminated early, or if its samples cannot be counted. Both arguments are
+  /// premultiplied.
   std::optional<EndedRay> ended_early(const Rgba& ray, const Rgba& sample) const;
 
  private:
-  double samples_;  ///< of a ray that does not end early
+  double samples_;  ///< of a ray that is not terminated early
   bool over_background_;
 };
 
 std::optional<EndedRay> EqualSamples::ended_early(const Rgba& ray, const Rgba& sample) const {
-  constexpr float thinnest = 0.02F;  // samples whose number an opacity tells
+  constexpr float thinnest = 0.02F;  // opacity range of samples that can be counted
   constexpr float densest = 0.4F;
   constexpr double fewest_left_out = 2.5;  // samples; noise may move a ray by one
-  constexpr double uneven = 0.1;           // of a number of samples
+  constexpr double uneven = 0.1;           // deviation from a whole number of samples
   constexpr double rounding = 2e-4;
-  // What is seen of a ray over a background of the program's own is less exact.
+  // A ray is seen less exactly over the program's own background.
   constexpr double rounding_over_background = 2e-3;
   constexpr double opaque = 1 - 1e-4;
   if (!reached(ray) || !(ray[3] > 0) || !(sample[3] >= thinnest && sample[3] <= densest)) return std::nullopt;

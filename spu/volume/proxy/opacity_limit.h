@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Early ray termination of the application's own: at which opacity its program leaves a ray, where what it
-// leaves out would be seen.
+// Early ray termination by the application: the opacity at which its program leaves a ray, where what it omits
+// would be visible.
 #pragma once
 
 #include "spu/volume/proxy/box.h"
@@ -9,9 +9,8 @@
 
 namespace understudy::spu {
 
-/// Gives `march`, which has its table and `steps`, the opacity behind which no sample is added: 1 where there
-/// is none, none below 0.9995, or samples are not composed by over. Beyond that, what a ray leaves out cannot
-/// be seen.
+/// Sets the opacity beyond which `march`, which has its table and `steps`, adds no sample. 1 if there is none
+/// from 0.5 to 0.9995, or if samples are not composed by over. Beyond 0.9995, what a ray omits is invisible.
 void take_opacity_limit(const MarchContext& measured, const volume::RaySteps& steps, FieldProbe& probe,
                         const RaysThroughBox& rays, March& march);
 

@@ -20,17 +20,17 @@
 namespace understudy::spu {
 namespace {
 
-/// What a varying number does to samples.
+/// What a varying scalar does to samples.
 enum class Role : std::uint8_t {
   none,
-  colours,  ///< it is part of a colour, as the direction of a light
-  decides,  ///< it decides, by a branch or by the end of a loop, which samples there are, or between colours
+  colours,  ///< it is part of a colour, such as the direction of a light
+  decides,  ///< by a branch or the end of a loop, it decides which samples there are, or between colours
   places,   ///< it is part of where samples lie
 };
 
 using InfluenceList = std::vector<program::Influence>;
 
-/// Of the varying numbers that `is_meant` tells.
+/// Returns the role of the varying scalars that `is_meant` selects.
 Role role_of(const program::RayFinding& ray, const std::function<bool(const program::Influence&)>& is_meant) {
   const auto places = [&](const program::Influence& influence) {
     return influence.flow == program::Flow::data && is_meant(influence);
@@ -42,14 +42,14 @@ Role role_of(const program::RayFinding& ray, const std::function<bool(const prog
   return std::ranges::any_of(ray.data, is_meant) ? Role::colours : Role::none;
 }
 
-/// Without the last three of 23 bits: what a vertex stage computes anew in every image is another number each
-/// time, though it stays.
+/// Rounds away the last three of 23 bits: what a vertex stage computes anew in every image may differ in them
+/// each time, though it is constant.
 float without_rounding(float value) {
   constexpr std::uint32_t half = 4;
   return std::bit_cast<float>((std::bit_cast<std::uint32_t>(value) + half) & ~(2 * half - 1));
 }
 
-/// What one image depends on, so far as it is seen here.
+/// Collects the inputs of one image.
 class OtherInputs {
  public:
   OtherInputs(const MarchContext& measured, const CoordinateSpace& space, const ProgramFindings& says,
@@ -87,7 +87,7 @@ class OtherInputs {
     });
   }
 
-  /// Of an input that is not probed.
+  /// For an input that is not probed.
   Role role_of_element(const std::string& name, int component) const {
     return role_of(*says_.ray, [&](const program::Influence& influence) {
       const program::Source& source = says_.facts.sources[influence.source];
@@ -129,7 +129,8 @@ class OtherInputs {
     return known->second;
   }
 
-  /// Of an array of blocks, OpenGL lists "Clip.plane" alone, and the text names "Clip[1].plane".
+  /// Whether the text names more members than OpenGL lists: of an array of blocks, OpenGL lists "Clip.plane"
+  /// alone, and the text names "Clip[1].plane".
   bool names_more_than_is_listed() const {
     return std::ranges::any_of(members_read_, [&](const std::string& read) {
       return std::ranges::none_of(measured_.stages.block_members, [&](const ProgramBlockMember& listed) {
@@ -138,13 +139,13 @@ class OtherInputs {
     });
   }
 
-  /// The place in the volume, and the eye where the ray's direction is handed on: the box is measured with
-  /// them.
+  /// Whether this is the position in the volume, or the eye if the ray's direction is passed on: these are
+  /// measured with the box.
   bool is_place(const StageInput& input, std::size_t component) const {
     return component < 3 && (input.name == space_.input || input.name == space_.origin);
   }
 
-  /// Numbers of one varying, each with what it does; they stand `offset` floats behind the beginning of each
+  /// The scalars of one varying, each with its role; they lie `offset` floats behind the beginning of each
   /// vertex.
   struct HandedOn {
     std::string name;
@@ -152,7 +153,7 @@ class OtherInputs {
     std::size_t offset = 0;
   };
 
-  /// Of all vertices, one after the other.
+  /// Returns these components of all vertices, one vertex after the other.
   std::vector<float> values_of(std::size_t offset, std::span<const std::size_t> components) const {
     const Capture& capture = *measured_.seen;
     std::vector<float> values;
@@ -163,7 +164,7 @@ class OtherInputs {
     return values;
   }
 
-  /// Numbers that do the same are one vector: of an eye that turns about an axis, one number stays.
+  /// Scalars of one role form one vector: while an eye turns about an axis, one of its components stays.
   void append_handed_on(const HandedOn& handed) {
     for (const Role role : {Role::colours, Role::decides, Role::places}) {
       std::vector<std::size_t> components;
@@ -177,7 +178,7 @@ class OtherInputs {
   void append_group(const HandedOn& handed, Role role, std::span<const std::size_t> components) {
     const std::vector<float> values = values_of(handed.offset, components);
     const bool constant = std::ranges::adjacent_find(values, std::not_equal_to()) == values.end();
-    // An eye has three numbers.
+    // An eye position would have three components.
     const bool may_be_step = constant && components.size() == 1;
     inputs_.begin_vector(fmt::format("varying: {} {}", handed.name, int(role)), role == Role::decides,
                          may_be_step);

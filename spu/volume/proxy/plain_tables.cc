@@ -21,15 +21,15 @@ using volume::Rgba;
 
 namespace {
 
-/// Light makes colours brighter, and programs clamp them: these are rather dark, and differ by much.
+/// Rather dark, because light makes colours brighter and programs clamp them, and clearly different.
 constexpr std::array<std::array<float, 3>, 3> plain_colours{
     {{0.4F, 0.08F, 0.2F}, {0.08F, 0.35F, 0.3F}, {0.25F, 0.2F, 0.05F}}};
 
-/// Places in the range of values, in parts of it from its low end. The first is the ray's value, the last two
-/// lie as far outside as steep slopes reach.
+/// Places in the range of values, as fractions from its low end. The first is the ray's value, the last two lie
+/// as far outside as steep slopes reach.
 constexpr std::array<float, 7> places_in_range{0.5F, 0, 0.25F, 0.75F, 1, -30, 30};
 
-/// What of a colour the program takes from a table.
+/// What the program takes from a table.
 enum class TableRole : std::uint8_t { colour_and_opacity, colour, opacity };
 
 struct Table {
@@ -37,7 +37,7 @@ struct Table {
   TableRole role = TableRole::colour_and_opacity;
 };
 
-/// Those that are looked up by samples; empty where one is not a texture of 1 or 2 dimensions.
+/// Returns the tables that are looked up by samples; empty if one is not a texture of 1 or 2 dimensions.
 std::vector<SampledTexture> textures_of_tables(const MarchContext& measured) {
   const Pipeline& pipeline = measured.run.pipeline();
   std::vector<SampledTexture> textures;
@@ -51,8 +51,8 @@ std::vector<SampledTexture> textures_of_tables(const MarchContext& measured) {
   return textures;
 }
 
-/// One table has both colours and opacities, or one of two the opacities (VTK's has them in every component).
-/// Empty where there is no such table.
+/// Returns one table that has both colours and opacities, or two, of which `of_opacity` has the opacities
+/// (VTK's has them in every component). Empty if there are no such tables.
 std::vector<Table> tables_with(const MarchContext& measured, std::size_t of_opacity) {
   constexpr std::size_t most = 2;
   const std::vector<SampledTexture> textures = textures_of_tables(measured);
@@ -77,7 +77,7 @@ std::vector<FieldProbe::PlainTable> plain(std::span<const Table> tables, const s
   return shown;
 }
 
-/// Under the tables, of even fields of these values.
+/// Returns what the ray shows under the tables, over constant fields of these values.
 std::vector<Rgba> under(FieldProbe& probe, const LitRay& ray, const std::vector<FieldProbe::PlainTable>& tables,
                         std::span<const float> values) {
   for (const FieldProbe::PlainTable& table : tables) probe.show_plain(table);
@@ -86,7 +86,7 @@ std::vector<Rgba> under(FieldProbe& probe, const LitRay& ray, const std::vector<
   return shown;
 }
 
-/// Of opacities of one sample, the one by which a ray lets about half of the light through.
+/// Returns the table's opacity under which the ray lets about half of the light through; null if there is none.
 std::optional<float> half_seen_opacity(FieldProbe& probe, const LitRay& ray, std::span<const Table> tables,
                                        float value) {
   constexpr float half = 0.6F;
@@ -109,7 +109,7 @@ bool are_one_colour(const std::vector<Rgba>& shown) {
   });
 }
 
-/// Whether each of the colours is seen, and none as another one.
+/// Whether each of the colours is visible, and differs from all others.
 bool are_told_apart(const std::vector<Rgba>& colours) {
   constexpr double darkest = 1e-3;
   constexpr double least = 0.1;  // of the brighter one
@@ -124,7 +124,7 @@ bool are_told_apart(const std::vector<Rgba>& colours) {
   return true;
 }
 
-/// Of each of the ray's samples, which are alike.
+/// Returns the opacity of each of the ray's samples, which are alike.
 double sample_opacity(const March& march, const LitRay& ray, double of_ray) {
   return 1 - std::pow(1 - of_ray, 1 / double(places_on_way(march.steps, ray.way.way).size()));
 }
@@ -170,7 +170,7 @@ std::optional<LitRay> under_known_tables(const MarchContext& measured, FieldProb
   const PlainTables& known = *march.plain_tables;
   const std::vector<Table> tables = tables_with(measured, known.of_opacity);
   if (tables.empty()) return std::nullopt;
-  // Rays have other numbers of samples from here, and where steps have changed.
+  // In another view, or with other steps, the ray has another number of samples.
   const double wanted = sample_opacity(march, ray, half);
   const auto opacity = float(std::min(0.9, double(known.opacity) * wanted / known.of_sample));
   LitRay plain_ray{ray.x, ray.y, ray.way};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ray under tables of one colour in place of the program's own: light can then be measured on slopes as steep
-// as one likes, in colours that tell diffuse light from highlights.
+// A ray under tables of one colour in place of the program's own: light can then be measured on slopes of any
+// steepness, in colours that distinguish diffuse light from highlights.
 #pragma once
 
 #include <optional>
@@ -16,13 +16,13 @@ struct RayUnderPlainTables {
   PlainTables tables;
 };
 
-/// The ray with tables for each of its values; none where the program looks up by samples neither one table of
-/// 1 or 2 dimensions nor two, of colours and of opacities, or where colours depend on more than them.
+/// Returns the ray with tables for each of its values. Null unless samples look up one table of 1 or 2
+/// dimensions, or two, of colours and of opacities, and colours depend on nothing else.
 std::optional<RayUnderPlainTables> under_plain_tables(const MarchContext& measured, FieldProbe& probe,
                                                       const March& march, const LitRay& ray);
 
-/// The ray with one value, under the tables of `march`, which has some; none where they are not there any more,
-/// or show nothing translucent.
+/// Returns the ray with one value, under the plain tables of `march`, which must have some; null if the program
+/// has no such tables any more, or if they show nothing translucent.
 std::optional<LitRay> under_known_tables(const MarchContext& measured, FieldProbe& probe, const March& march,
                                          const LitRay& ray);
 

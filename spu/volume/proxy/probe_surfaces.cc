@@ -6,7 +6,7 @@
 namespace understudy::spu {
 namespace {
 
-/// A viewer with several windows has as many sizes; one that is resized leaves old ones behind.
+/// A viewer with several windows has as many sizes; a window that is resized leaves old ones behind.
 constexpr std::size_t most_far_planes = 4;
 
 }  // namespace

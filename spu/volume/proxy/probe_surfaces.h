@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What probes draw into and read depth from, kept from frame to frame: a ray caster is probed in every frame in
-// which the camera moves, and making these takes longer than the probes.
+// which the camera moves, and creating these takes longer than the probes.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@ class ProbeSurfaces {
   ProbeSurfaces(const ProbeSurfaces&) = delete;
   ProbeSurfaces& operator=(const ProbeSurfaces&) = delete;
 
-  /// A framebuffer of floats with at least so many pixels and their depths, which becomes the current one. What
-  /// it shows is not known. 0 where the driver cannot draw into floats.
+  /// Binds a framebuffer of floats, with depth, of at least this size. Its contents are undefined. Returns 0 if
+  /// the driver cannot draw into floats.
   GLuint bind_framebuffer(int width, int height);
-  /// A depth texture of this size that is 1 everywhere, bound to GL_TEXTURE_2D of the active unit.
+  /// Binds a depth texture of this size that is 1 everywhere to GL_TEXTURE_2D of the active unit.
   void bind_far_plane(int width, int height);
 
  private:

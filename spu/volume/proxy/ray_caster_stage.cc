@@ -30,11 +30,10 @@
 namespace understudy::spu {
 namespace {
 
-/// Cells that bricks keep around their own for light: a block, beyond which no gradient that is recognised
-/// looks.
+/// Ghost layer of bricks for light, in cells: one block, the farthest that recognised gradients reach.
 constexpr int gradient_ghost_layer = 8;
 
-/// A box whose texture coordinates are known by name: measured again when the program or the texture changes.
+/// Returns the draw's box in a space that is known. Throws Refusal if its surface is not closed.
 ProxyBox box_in(const MarchContext& measured, const CoordinateSpace& space) {
   const auto box = proxy_box(measured, space);
   if (!box)
@@ -44,7 +43,7 @@ ProxyBox box_in(const MarchContext& measured, const CoordinateSpace& space) {
   return *box;
 }
 
-/// Of the image's nine parts the one that shows something in most pixels: enough to tell marches by.
+/// Returns the one of the image's nine parts that shows something in most pixels: enough to compare marches by.
 NativeImage fullest_part(const NativeImage& whole) {
   const volume::Rect& all = whole.rect;
   const int columns = std::max(1, all.width / 3);
@@ -70,47 +69,47 @@ NativeImage fullest_part(const NativeImage& whole) {
   return fullest;
 }
 
-/// Planes where rays begin and end.
+/// Returns the planes at which rays begin and end.
 std::vector<volume::HalfSpace> ends_of(const ProxyBox& box, const Cuts& cuts) {
   std::vector<volume::HalfSpace> planes = box.cuts;
   planes.insert(planes.end(), cuts.clipping.begin(), cuts.clipping.end());
   return planes;
 }
 
-/// `follows`: which of the numbers that vary move with the camera; one that changes alone may cut the volume.
+/// `follows`: which of the varying scalars move with the camera; one that changes alone may cut the volume.
 VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, const March& march,
                                        const std::vector<bool>& follows) {
   using Effect = VerificationSchedule::Effect;
   VerificationSchedule::Inputs all;
   for (const float value : inputs.fixed) all.push_back({value});
   for (const std::size_t table : inputs.tables) all[table].effect = Effect::predicted;
-  // Steps that were only likely are likely to be others now.
+  // Steps that were only likely are probably other ones now.
   for (const std::size_t step : inputs.steps)
     all[step].effect = march.steps_seen ? Effect::predicted : Effect::unknown;
   std::size_t vector = 0;
   for (std::size_t i = 0; i < inputs.varying.size(); ++i) {
     while (vector + 1 < inputs.varying_begins.size() && inputs.varying_begins[vector + 1] <= i) ++vector;
     const Effect alone = inputs.varying_chooses[vector] ? Effect::decides : Effect::unknown;
-    // Not a number: the depth of opaque geometry, which is drawn in every frame.
+    // NaN: the depth of opaque geometry, which is drawn in every frame.
     const float value = inputs.varying[i];
     all.push_back({std::isnan(value) ? 0.0F : value, follows[i] ? Effect::followed : alone});
   }
   for (const float value : inputs.depths) all.push_back({value});
-  // What is no number is another every time.
+  // NaN equals no earlier value, so this counts as a change every time.
   if (inputs.unreadable) all.push_back({std::numeric_limits<float>::quiet_NaN(), Effect::unknown});
   return all;
 }
 
-/// As RaysLookedAt has it: no two of many frames come close to each other.
+/// RaysLookedAt::offset of a frame: among many frames, no two come close to each other.
 double offset_of_values(std::uint64_t frame) {
   constexpr double golden_section = 0.618033988749895;
   const double turns = double(frame) * golden_section;
   return turns - std::floor(turns);
 }
 
-/// Where the camera moved, as it does in every frame while somebody turns a volume, half of it in each of two
-/// frames, and other values each time. Where a step may have changed, always a long ray: short ones have as
-/// many samples under a step that is a little longer.
+/// What to probe when the camera has moved, as in every frame while somebody turns a volume: half of the checks
+/// in each of two frames, with other values each time. If a step may have changed, always a long ray: short
+/// ones have as many samples under a step that is a little longer.
 RaysLookedAt rays_looked_at(const March& march, bool turned, BesideChange beside, std::uint64_t frame) {
   if (!turned || beside == BesideChange::alone) return {};
   const bool values = march.shows_one_colour() || frame % 2 == 0;
@@ -119,20 +118,20 @@ RaysLookedAt rays_looked_at(const March& march, bool turned, BesideChange beside
           .long_ray = !values || beside == BesideChange::with_camera};
 }
 
-/// Where steps have another length, as in every frame while somebody turns a volume in VTK, and nothing else is
-/// known to be new: another axis each time.
+/// What to check when steps have another length, as in every frame while somebody turns a volume in VTK, and
+/// nothing else is known to be new: another axis each time.
 PlacesLookedAt few_places(std::uint64_t frame) {
   return {.values = 8, .bands = {.number = 2, .halves = true}, .axes_of_gradients = {std::size_t(frame % 3)}};
 }
 
-/// As the last one.
+/// Appends the march as the last one measured.
 void remember(MeasuredMarch march, std::vector<MeasuredMarch>& measured) {
   constexpr std::size_t most_remembered = 4;  // two boxes of one program, each with and without a setting
   if (measured.size() == most_remembered) measured.erase(measured.begin());
   measured.push_back(std::move(march));
 }
 
-/// Through the middle of the view; none where the eye is inside.
+/// Returns the path through the middle of the view; null if the eye is inside.
 std::optional<volume::Vec3> middle_way(const ProxyBox& box) {
   if (!box.cuts.empty()) return std::nullopt;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
@@ -140,13 +139,13 @@ std::optional<volume::Vec3> middle_way(const ProxyBox& box) {
   return rays.way(middle[0], middle[1]);
 }
 
-/// Whether this view shows which of several steps are the march's, which an earlier one had left open.
+/// Whether this view shows which of several steps, left open by an earlier one, are the march's.
 bool tells_steps_apart(const March& march, const ProxyBox& box) {
   const auto way = middle_way(box);
   return way && tells_apart(march.alike_metrics, march.steps, *way);
 }
 
-/// Where this view leaves open what the march's steps are.
+/// Stores the path of a view that leaves open what the march's steps are.
 void remember_way(const March& march, const ProxyBox& box, std::vector<MeasuredWay>& ways) {
   constexpr std::size_t most_remembered = 4;
   if (!count_as_measured(march.steps.metric, ways)) ways.clear();
@@ -156,9 +155,9 @@ void remember_way(const March& march, const ProxyBox& box, std::vector<MeasuredW
   ways.push_back({*way, steps_of_way(march.steps, *way)});
 }
 
-/// How little a march explains an image, smaller being better: by its worst tile, as verification judges it;
-/// where that is no more than a driver's rounding, what was seen of samples is believed before what was
-/// guessed; and then the mean tells, in which a few rays that graze the box weigh much.
+/// How badly a march explains an image; smaller is better. First by its worst tile, as verification judges it.
+/// If that is no more than a driver's rounding, steps that were measured precede those that were guessed; then
+/// the mean decides, in which a few rays that graze the box weigh much.
 struct Unlikeness {
   static constexpr double rounding = 0.25;
 
@@ -174,7 +173,7 @@ struct Unlikeness {
   double mean_square = 0;
 };
 
-/// Whether the program, with the uniforms it has, fetches from a depth texture.
+/// Whether the program, with its present uniforms, fetches from a depth texture.
 bool fetches_depth(const GlContext& context, const Pipeline& pipeline, const program::StageFacts& facts) {
   const DispatchTable& gl = *context.gl;
   return std::ranges::any_of(pipeline.others, [&](const SampledTexture& texture) {
@@ -185,10 +184,11 @@ bool fetches_depth(const GlContext& context, const Pipeline& pipeline, const pro
   });
 }
 
-/// Why fragments that replace what is there may leave another image than the nodes'; null: they leave theirs.
+/// Why fragments that replace what is there may leave another image than the nodes'; null if they leave the
+/// same.
 std::optional<Refusal> refusal_of_replacing(const GlContext& context, const Pipeline& pipeline,
                                             const ProgramFindings& says) {
-  // Where both were drawn, what is left must be the nearer one.
+  // Where both faces are drawn, the nearer fragment must remain.
   const bool nearest_is_left =
       context.gl->IsEnabled(GL_CULL_FACE) || (pipeline.depth_test && pipeline.depth_write);
   const bool blends = !pipeline.blending.replaces;
@@ -213,14 +213,14 @@ bool shows_something(const volume::Image& image) {
   return false;
 }
 
-/// Whether the application's fragments take the place of what is there, and so does the image.
+/// Whether the application's fragments, and so the image, replace what is there.
 bool replaces_pixels(const Pipeline& pipeline, const March& march) {
   return pipeline.blending.replaces || march.background;
 }
 
 /// Whether the box is drawn again to blend its image: it covers some samples of a pixel, and is hidden in some.
-/// Where its back faces are drawn as well, the image holds what both leave, and two fragments would be too
-/// many.
+/// If its back faces are drawn as well, the image holds what both fragments leave, and blending two would be
+/// too many.
 bool covers_samples(const GlContext& context, const Pipeline& pipeline, const March& march) {
   const Blending& blending = pipeline.blending;
   return pipeline.target.samples > 0 && !replaces_pixels(pipeline, march) &&
@@ -228,8 +228,9 @@ bool covers_samples(const GlContext& context, const Pipeline& pipeline, const Ma
          blending.op != volume::Operator::min && context.gl->IsEnabled(GL_CULL_FACE);
 }
 
-/// But for rounding: the coordinates of a box that is cropped by less than a texel are others, too, while
-/// samples that are counted ahead may begin half a texel inside (volume::is_all_of_texture).
+/// Whether a region is the whole texture, up to rounding: a box that is cropped by less than a texel has other
+/// coordinates, too, while samples that are counted ahead may begin half a texel inside
+/// (volume::is_all_of_texture).
 bool is_whole_texture(const volume::Box& region) {
   constexpr double same = 1e-3;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -257,12 +258,11 @@ struct RayCasterStage::Draw {
   bool eye_inside = false;
   bool ends_at_geometry = false;                           ///< as in MarchContext
   std::optional<program::NeighbourDistance> neighbours{};  ///< likewise
-  bool samples_move_samples = false;                       ///< as of program_check.h
+  bool samples_move_samples = false;                       ///< as in program_check.h
   std::span<const std::string> tables_of_samples{};
   std::span<const std::string> tables_of_one_texel{};
   std::span<const std::string> tables_of_gradients{};
-  std::optional<volume::Rect>
-      kept{};  ///< part of the window where fragments are, where some are discarded by place
+  std::optional<volume::Rect> kept{};  ///< part of the window with fragments, if some are discarded by position
 
   MarchContext measured() const {
     return {context,
@@ -313,7 +313,7 @@ ProxyBox RayCasterStage::find_box(Draw& draw) {
 std::vector<CoordinateSpace> RayCasterStage::spaces_of(const Draw& draw) {
   constexpr int most_box_changes = 3;
   std::vector<CoordinateSpace> spaces = coordinate_spaces(draw.measured());
-  // One that keeps changing moves with the eye, or shows one part of the volume after the other.
+  // A box that keeps changing moves with the eye, or shows one part of the volume after the other.
   if (draw.known.march.box_changes > most_box_changes) std::erase_if(spaces, &CoordinateSpace::of_whole_box);
   return spaces;
 }
@@ -333,7 +333,7 @@ volume::Box RayCasterStage::region_in_any(const Draw& draw, const ProxyBox& box)
 void RayCasterStage::follow_inside(Draw& draw, const ProxyBox& box, const MarchInputs& inputs) {
   std::optional<March>& march = draw.known.march.march;
   if (!march || march->from_inside || box.cuts.empty() || inputs.fixed != draw.known.march.inputs.fixed) return;
-  // Rays of all directions, which may show that the step was not known in every one.
+  // Rays now have all directions, and may show that the step was not known in every one.
   auto again = with_new_steps(draw.measured(), *march, box);
   if (const auto* refusal = std::get_if<Refusal>(&again)) throw *refusal;
   march = std::get<March>(std::move(again));
@@ -348,7 +348,8 @@ void RayCasterStage::refuse_again(const Draw& draw) const {
 }
 
 void RayCasterStage::wait_for_earlier_drawing() const {
-  // The first probe that is read back would wait for it, and what a probe takes could not be told.
+  // Otherwise the first probe that is read back would wait for it, and the time of a probe could not be
+  // measured.
   const TimedShare timed(account_.clock(), &FrameShares::waiting);
   context_.gl->Finish();
 }
@@ -371,13 +372,13 @@ std::optional<March> RayCasterStage::with_other_steps(const Draw& draw, const Pr
                                                       const MarchInputs& inputs,
                                                       std::span<const TableContents> tables) const {
   const KnownMarch& known = draw.known.march;
-  // Where neither steps nor tables are other ones, something else is new.
+  // If neither steps nor tables differ, something else is new.
   if (!known.march || known.measured.empty() || inputs.fixed == known.inputs.fixed) return std::nullopt;
   const MeasuredMarch& base = known.measured.back();
   if (base.march.from_inside != known.march->from_inside || base.march.clipped != known.march->clipped)
     return std::nullopt;
   for (const double factor : step_factors(base.inputs, inputs)) {
-    // A table that was edited is measured, value by value.
+    // A table that was edited is measured value by value.
     if (!only_corrected(base.tables, tables, factor)) continue;
     auto derived =
         with_longer_steps(draw.measured(), base.march, box, factor, offset_of_values(account_.frames()));
@@ -402,7 +403,7 @@ std::optional<March> RayCasterStage::measured_before(const Draw& draw, const Pro
 
 ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                                  compositor::RenderService& service) {
-  // Another table is usual while somebody edits one; where samples lie is not tried again for that.
+  // The table keeps changing while somebody edits it; where samples lie is not measured again for that.
   KnownMarch& known = draw.known.march;
   std::optional<March>& march = known.march;
   if (auto before = measured_before(draw, box, inputs)) {
@@ -412,11 +413,11 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
   std::vector<TableContents> tables = table_contents(context_, draw.run, draw.tables_of_samples);
   std::optional<March> again = with_other_steps(draw, box, inputs, tables);
   const bool derived = again.has_value();
-  // Fields of one value, by which a table is measured, do not see the step of an extreme or a mean.
+  // Constant fields, by which a table is measured, do not show the step of an extreme or a mean.
   const bool step_unknown = march && march->shows_one_colour() && steps_differ(known.inputs, inputs);
   if (march && !again && !step_unknown && !draw.samples_move_samples)
     again = with_new_table(draw.measured(), *march, box);
-  // What counts samples does not see noise that was turned on.
+  // Counts of samples do not show noise that was turned on.
   if (again && !only_tables_differ(known.inputs, inputs) &&
       !still_placed(draw.measured(), *again, box, derived ? few_places(account_.frames()) : PlacesLookedAt{}))
     again.reset();
@@ -428,7 +429,7 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
     MarchFinding finding = measure_march(draw.measured(), draw.spaces);
     if (const auto* refusal = std::get_if<Refusal>(&finding)) throw *refusal;
     march = choose_march(draw, service, std::get<std::vector<March>>(finding));
-    draw.known.frames = 0;  // looked at again, as a new volume is
+    draw.known.frames = 0;  // verified again, as a new volume is
   }
   if (!again || !derived) remember({*march, inputs, std::move(tables)}, known.measured);
   ProxyBox found = box_in(draw.measured(), march->space);
@@ -457,7 +458,7 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   if (draw.neighbours) draw.tables_of_gradients = says.ray->tables_of_gradients;
   ProxyBox box = find_box(draw);
   draw.eye_inside = !box.cuts.empty();
-  // Says what values there are.
+  // Also determines the range of values.
   uploader_.upload({pipeline,
                     {},
                     seen.texture_version,
@@ -504,7 +505,7 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
 
 volume::Rect RayCasterStage::kept_window(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                                          const ProgramFindings& says) const {
-  constexpr std::size_t most_kept = 4;  // a window, an image that is saved of it, …
+  constexpr std::size_t most_kept = 4;  // a window, an image that is saved of it, and so on
   std::array<GLint, 4> viewport{};
   context_.gl->GetIntegerv(GL_VIEWPORT, viewport.data());
   KeptWindow asked{{viewport[0], viewport[1], viewport[2], viewport[3]},
@@ -528,14 +529,14 @@ volume::RenderRequest RayCasterStage::compose(const Draw& draw, const March& mar
   const SentVolume& sent = draw.known.sent;
   volume::RenderRequest request =
       composer_.compose(pipeline, box.camera, box.region, sent.description, sent.texture.filter);
-  // The box that an image replaces its pixels by is tested against depth itself.
+  // If the image replaces pixels, the box that it is drawn with is depth-tested itself.
   if (replaces_pixels(pipeline, march) && !draw.ends_at_geometry) return request;
   composer_.hide_behind_geometry(pipeline, request);
   const volume::Matrix4& texture_to_clip = box.camera.texture_to_clip;
   if (!draw.ends_at_geometry &&
       geometry_inside(request, texture_to_clip, {texture_to_clip, box.region, box.cuts}))
     throw Refusal{"opaque geometry stands in the ray caster's box, and rays do not end at it"};
-  // Of several samples of a pixel some are hidden, others are not.
+  // Of a multisampled pixel, some samples may be hidden, and others not.
   if (covers_samples(context_, pipeline, march) && !draw.ends_at_geometry) request.depth.reset();
   return request;
 }
@@ -559,10 +560,10 @@ ImageRequest RayCasterStage::ask(const Draw& draw, const March& march, const Pro
   const bool cut = !image.ray_ends.empty() || !image.parts.front().empty();
   if (cut && march.steps.counted_from)
     throw Refusal{"planes cut a ray caster's box whose samples are counted before they are taken"};
-  // Rays too short for a sample then have none.
+  // Then rays too short for a sample have none.
   if (cut || !volume::is_all_of_texture(image.request.region, draw.measured().texture.size))
     image.request.steps->at_least_one = false;
-  // One number a pixel travels to the nodes.
+  // One scalar per pixel is sent to the nodes.
   const std::size_t pixels = volume::footprint(image.request, image.request.region).pixels();
   const auto refuse_more = [&](const char* reason) {
     if (pixels > std::size_t(compositor::limits::max_ray_offsets))
@@ -586,7 +587,7 @@ ImageRequest RayCasterStage::ask(const Draw& draw, const March& march, const Pro
 void RayCasterStage::complete_image(const March& march, ImageRequest& asked, compositor::RenderService& service,
                                     volume::Image& image, volume::FrameCounts& counts) {
   volume::RenderRequest& request = asked.request;
-  // The nodes leave out the rim that shows nothing.
+  // The nodes' image omits the rim that shows nothing.
   volume::Image whole(volume::footprint(request, request.region));
   std::fill(whole.rgba.begin(), whole.rgba.end(), volume::neutral_value(request.op));
   compositor::blend(request.op, whole, image.view());

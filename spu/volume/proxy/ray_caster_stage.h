@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stage for ray casters: from the draw of a box, whose fragment shader marches, to a request. Stands where
-// upload, classification and composition stand for slices: how rays march says what colours mean, and is
+// The stage for ray casters: from the draw of a box whose fragment shader marches, to a request. It replaces
+// upload, classification and composition of slices: how rays march determines what colours mean, and is
 // measured on the texels' own range of values.
 #pragma once
 
@@ -23,17 +23,17 @@ class RenderService;
 
 namespace understudy::spu {
 
-/// What is remembered of the volume that a ray caster draws.
+/// What is stored about the volume that a ray caster draws.
 struct KnownRayCaster {
   KnownMarch& march;
   SentVolume& sent;
   const VerifiedVolume& verified;
   const RefusalHistory& refusals;
-  std::uint64_t& frames;  ///< in which it was substituted: none, once its march is measured anew
+  std::uint64_t& frames;  ///< in which it was substituted; 0 again once its march is measured anew
   VolumeCounters& counters;
 };
 
-/// What is asked for.
+/// The image that is requested, and its camera.
 struct RayCasterRequest {
   ImageRequest image;
   CameraFit camera;
@@ -53,13 +53,13 @@ class RayCasterStage {
         account_(account),
         surfaces_(context) {}
 
-  /// The request for `run`, the draw of a box. Measures what `known` does not tell, and leaves it there. Needs
-  /// the session's lock. Throws Refusal, and what the service throws.
+  /// Returns the request for `run`, the draw of a box. Measures what `known` lacks, and stores it there. The
+  /// session must be locked. Throws Refusal, and what the service throws.
   RayCasterRequest request(const Run& run, const RecognisedRun& seen, KnownRayCaster known,
                            compositor::RenderService& service);
 
-  /// From the nodes' image of a ray caster to what it shows, together with the parts that cropping has left
-  /// behind the nearest. Renders these, whose figures are added to `counts`.
+  /// Turns the nodes' image of a ray caster into what it shows, together with the parts that cropping has left
+  /// behind the nearest. Renders these, and adds their figures to `counts`.
   void complete_image(const March& march, ImageRequest& asked, compositor::RenderService& service,
                       volume::Image& image, volume::FrameCounts& counts);
 
@@ -68,18 +68,19 @@ class RayCasterStage {
 
   ProxyBox find_box(Draw& draw);
   static std::vector<CoordinateSpace> spaces_of(const Draw& draw);
-  /// What of the texture a draw shows, whichever of its spaces it is in.
+  /// Returns the part of the texture that a draw shows, whichever of its spaces it is in.
   static volume::Box region_in_any(const Draw& draw, const ProxyBox& box);
-  /// Throws the last refusal before what was refused several times is measured once more, but in some frames.
+  /// Throws the last refusal if there were several in a row. In some frames it does not, so that the draw is
+  /// measured once more.
   void refuse_again(const Draw& draw) const;
   void follow_inside(Draw& draw, const ProxyBox& box, const MarchInputs& inputs);
   void wait_for_earlier_drawing() const;
   std::string_view why_measured(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                                 const std::vector<bool>& follows, bool turned) const;
-  /// A march that was measured before the last one, where a viewer takes turns between a few, and holds again;
-  /// it becomes the last one measured.
+  /// Returns a march that was measured before the last one and holds again, as in a viewer that alternates
+  /// between a few; it becomes the last one measured.
   std::optional<March> measured_before(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs) const;
-  /// The march whose table was measured, with the steps that the program has now; null where more is new.
+  /// Returns the march whose table was measured, with the steps that the program has now; null if more is new.
   std::optional<March> with_other_steps(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                                         std::span<const TableContents> tables) const;
   ProxyBox measure(Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
@@ -89,7 +90,7 @@ class RayCasterStage {
                    volume::RenderRequest composed) const;
   volume::Rect kept_window(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                            const ProgramFindings& says) const;
-  /// The march whose image is most like the application's.
+  /// Returns the march whose image is most like the application's.
   March choose_march(Draw& draw, compositor::RenderService& service, const std::vector<March>& marches);
 
   const GlContext& context_;
@@ -103,7 +104,7 @@ class RayCasterStage {
   ProbeSurfaces surfaces_;
 };
 
-/// Not every image of the nodes is what the application shows of it: this one goes through complete_image().
+/// Whether the nodes' image is not yet what the application shows, and must go through complete_image().
 bool is_finished_here(const ImageRequest& image, const std::optional<March>& march);
 
 }  // namespace understudy::spu

@@ -117,7 +117,7 @@ std::optional<PlainSum> plain_sum(const std::vector<Rgba>& through, const std::v
   PlainSum sum{*alpha};
   float largest = 0;
   for (const Rgba& ray : through) largest = std::max(largest, brightest_channel(ray));
-  // A sum that several values reach is where the program stops counting.
+  // A sum that several values reach is the program's ceiling.
   const auto reached_by = std::count_if(through.begin(), through.end(), [&](const Rgba& ray) {
     return largest - brightest_channel(ray) <= 1e-6F * largest;
   });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours of rays and of their samples: how samples add up to a ray, by over, as a sum, or as an extreme.
+// Colours of rays and of their samples: how samples make up a ray, by over, as a sum, or as an extreme.
 #pragma once
 
 #include <array>
@@ -12,47 +12,48 @@
 
 namespace understudy::spu {
 
-/// The value at `place` of a range, in [0,1].
+/// Returns the value at `place`, in [0,1], of a range.
 float value_at(const std::array<float, 2>& range, double place);
 
-/// `count` values, all over the range.
+/// Returns `count` values, evenly spread over the range.
 std::vector<float> values_over(const std::array<float, 2>& range, int count = 128);
 
-/// Whether there was a fragment.
+/// Whether a pixel has a fragment.
 bool reached(const volume::Rgba& fragment);
 
-/// The colour of a fragment's ray, multiplied by alpha.
+/// Returns the colour of a fragment's ray, multiplied by alpha unless it is so `already`.
 volume::Rgba premultiplied(volume::Rgba fragment, bool already);
-/// Whether the program's fragments are multiplied by alpha.
+/// Whether the program's fragments are already multiplied by alpha.
 bool premultiplied_already(const MarchContext& measured, const March& march);
 
 /// Whether blending multiplies colours by alpha, after they are clamped.
 bool multiplies_by_alpha(const Pipeline& pipeline);
 
 /// Whether colours grow in proportion to alpha from a short ray (`briefly`) to a long one (`through`) over the
-/// same fields, each of one value.
+/// same constant fields.
 bool grow_with_alpha(const std::vector<volume::Rgba>& through, const std::vector<volume::Rgba>& briefly);
 float brightest_channel(const volume::Rgba& colour);
 
-/// Whether there is light, and its table holds colours of slopes, since even fields are black.
+/// Whether there is light under which constant fields are black: the table then holds colours of slopes.
 bool is_black_where_even(const March& march);
 
-/// What the march's table gives a sample in an even field.
+/// Returns the colour that the march's table gives a sample in a constant field.
 volume::Rgba even_sample(const March& march, float value);
 
-/// One of `n` equal samples that make up `ray`, and the ray that `n` equal samples make up; premultiplied.
+/// Return one of `n` equal samples that make up `ray`, and the ray that `n` equal samples make up;
+/// premultiplied.
 volume::Rgba sample_of(const March& march, const volume::Rgba& ray, double n);
 volume::Rgba ray_of(const March& march, const volume::Rgba& sample, double n);
 
-/// How much of a ray's samples is seen: between nothing and 1, but for sums that shine brighter.
+/// Returns how much of a ray's samples is visible: from 0 to 1, or more for bright sums.
 float amount(const March& march, const volume::Rgba& ray);
 
-/// The alpha that all these fragments have, above 0; null where they differ.
+/// Returns the alpha that all these fragments have, if it is above 0; null if they differ.
 std::optional<float> one_alpha(const std::vector<volume::Rgba>& through,
                                const std::vector<volume::Rgba>& briefly);
 
-/// Samples that are added up under one opacity, as `through` and `briefly`, a long ray and a short one over the
-/// same fields, show them.
+/// Returns the sum if a long ray (`through`) and a short one (`briefly`) over the same fields show that samples
+/// are added up under one opacity; otherwise null.
 std::optional<PlainSum> plain_sum(const std::vector<volume::Rgba>& through,
                                   const std::vector<volume::Rgba>& briefly);
 

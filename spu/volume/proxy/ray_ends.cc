@@ -22,12 +22,12 @@ using volume::Vec4;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A stretch of a ray, in units of the way from its point on the near plane to that on the far one.
+/// A stretch of a ray, as fractions of its path from the near plane to the far plane.
 struct Stretch {
   double enter = -infinity;
   double leave = infinity;
 
-  /// Keeps where value + t * slope >= 0.
+  /// Keeps the part in which value + t * slope >= 0.
   void keep(double value, double slope) {
     if (slope > 0) enter = std::max(enter, -value / slope);
     if (slope < 0) leave = std::min(leave, -value / slope);
@@ -39,7 +39,7 @@ Vec3 point(const Vec4& homogeneous) {
   return {homogeneous[0] / homogeneous[3], homogeneous[1] / homogeneous[3], homogeneous[2] / homogeneous[3]};
 }
 
-/// The ray of one pixel: its stretch in the box, and what planes leave of that.
+/// The ray of one pixel: its stretch in the box, and what planes leave of it.
 struct PixelRay {
   PixelRay(const volume::RenderRequest& request, const volume::Matrix4& clip_to_texture,
            const std::vector<volume::HalfSpace>& planes, int x, int y)
@@ -61,13 +61,13 @@ struct PixelRay {
       kept.keep(volume::dot(plane.normal, start) + plane.offset, volume::dot(plane.normal, along));
   }
 
-  /// Depth is linear in homogeneous coordinates, not in t.
+  /// Returns the window depth at t. Depth is linear in homogeneous coordinates, not in t.
   double depth_at(double t) const {
     const double s = t > 0 ? t * w_near / (t * w_near + (1 - t) * w_far) : 0;
     return depth_range[0] + s * (depth_range[1] - depth_range[0]);
   }
 
-  /// Before opaque geometry at `depth`.
+  /// Whether the ray enters in front of opaque geometry at `depth`.
   bool enters_before(float depth) const {
     return kept.enter < kept.leave && depth_at(kept.enter) <= double(depth);
   }
@@ -80,7 +80,7 @@ struct PixelRay {
   Stretch kept;
 };
 
-/// Window depths of the application's opaque geometry, or farther than any.
+/// Returns the window depths of the application's opaque geometry; beyond any depth where there is none.
 volume::DepthImage depths_over(const volume::Rect& rect, const volume::RenderRequest& request) {
   constexpr float beyond_every_depth = 2;
   volume::DepthImage image;
@@ -99,7 +99,7 @@ volume::DepthImage depths_over(const volume::Rect& rect, const volume::RenderReq
   return image;
 }
 
-/// Which pixels' rays enter the box, between the planes, before opaque geometry.
+/// Determines which pixels' rays enter the box, between the planes, in front of opaque geometry.
 class EnteringRays {
  public:
   EnteringRays(const std::vector<volume::HalfSpace>& planes, const volume::RenderRequest& request,
@@ -109,7 +109,7 @@ class EnteringRays {
         depth_(depths_over(rect, request)),
         clip_to_texture_(volume::inverse(request.texture_to_clip)) {}
 
-  /// Of a pixel of the rectangle, in the window.
+  /// For a pixel of the rectangle, in window coordinates.
   bool at(int x, int y) const {
     if (!clip_to_texture_) return false;
     const volume::Rect& rect = depth_.rect;
@@ -128,7 +128,7 @@ class EnteringRays {
 
 void end_rays_at(const std::vector<volume::HalfSpace>& planes, double past_planes,
                  volume::RenderRequest& request) {
-  constexpr auto no_sample = float(volume::max_planes);  // begins behind the end of every ray
+  constexpr auto no_sample = float(volume::max_planes);  // begins beyond the end of every ray
   const auto back = volume::inverse(request.texture_to_clip);
   const volume::Rect rect = volume::footprint(request, request.region);
   if (planes.empty() || !back || rect.empty() || !request.steps) return;
@@ -147,7 +147,7 @@ void end_rays_at(const std::vector<volume::HalfSpace>& planes, double past_plane
       offsets.steps[tile_y * std::size_t(rect.width) + tile_x] =
           float((ray.kept.enter - ray.in_box.enter) * steps_along + noise);
       if (ray.kept.leave >= ray.in_box.leave) continue;
-      // Who looks for the end after a sample has been taken takes the first one anyway.
+      // A program that checks for the end after each sample takes the first one in any case.
       const double way = (ray.kept.leave - ray.kept.enter) * steps_along;
       const double shown = past_planes > 0 ? std::max(way, steps.first) + past_planes : way;
       const double end = ray.kept.enter + (shown - steps.past_depth) / steps_along;

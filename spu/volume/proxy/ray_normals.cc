@@ -56,7 +56,7 @@ Tint lit_tint(const volume::Light& light, const std::optional<double>& cosine, c
     for (std::size_t c = 0; c < 3; ++c) lit[c] = double(light.even[c]) * base[c];
     return lit;
   }
-  // Entries are so close that the nearest one does.
+  // Entries are so dense that the nearest one suffices.
   const double place = (std::clamp(*cosine, -1.0, 1.0) + 1) / 2 * double(light.response.size() - 1);
   const volume::LightResponse& response = light.response[std::size_t(std::lround(place))];
   for (std::size_t c = 0; c < 3; ++c)

@@ -17,10 +17,11 @@ namespace {
 
 constexpr int bands = 24;  ///< of two rows each, on which samples are counted
 constexpr float same_but_for_rounding = 0.02F;
-/// Lighting needs a gradient, however small: by so much of the range of values the fields rise that show it.
+/// Rise of the fields that reveal lighting, as a fraction of the range of values: any gradient suffices,
+/// however small.
 constexpr float slight_rise = 1e-5F;
 
-/// Whether the colour jumps at `value`: a slope there says nothing about lighting.
+/// Whether the colour jumps at `value`: a slope there does not reveal lighting.
 bool is_at_step(const MarchContext& measured, FieldProbe& probe, const Ray& ray, float value) {
   const float rise = slight_rise * (measured.range[1] - measured.range[0]);
   const std::array around{std::max(value - rise, measured.range[0]), value,
@@ -75,7 +76,7 @@ bool depends_on_gradient(const MarchContext& measured, FieldProbe& probe, const 
 
 bool only_nearest_shows(const MarchContext& measured, FieldProbe& probe, const Ray& ray,
                         const std::vector<float>& values, const std::vector<Rgba>& nearest) {
-  // A fragment that is added shows where fragments show most, and what adds one does not go by values.
+  // An added fragment shows where fragments show most, and does not depend on values.
   constexpr std::size_t looked_at = 3;
   if (measured.run.pipeline().blending.replaces || probe.culls_faces()) return true;
   std::vector<std::size_t> most_visible(values.size());
@@ -97,7 +98,7 @@ std::optional<TranslucentRay> translucent_ray(const MarchContext& measured, Fiel
                                               const RaysThroughBox& rays, const volume::RaySteps& texels,
                                               const March& march, const std::vector<float>& values) {
   constexpr std::size_t looked_at = 4;
-  // Of what is nearly opaque the ray may have ended early: a shorter one is better.
+  // A nearly opaque ray may have been terminated early: a shorter one is better.
   constexpr std::array from_half{0.4F, 0.48F};
   const auto middle = rays.middle();
   const auto way = rays.way(middle[0], middle[1]);
@@ -111,7 +112,7 @@ std::optional<TranslucentRay> translucent_ray(const MarchContext& measured, Fiel
   }
   for (const float too_far_from_half : from_half) {
     for (std::size_t part = 0; part < of_parts.size(); ++part) {
-      std::vector<std::pair<float, float>> by_distance;  // from half, and the value
+      std::vector<std::pair<float, float>> by_distance;  // distance from half, and the value
       for (std::size_t i = 0; i < values.size(); ++i) {
         const float distance = std::abs(amount(march, fragments[part][i]) - 0.5F);
         if (reached(fragments[part][i]) && distance < too_far_from_half)
@@ -129,8 +130,9 @@ std::optional<TranslucentRay> translucent_ray(const MarchContext& measured, Fiel
 
 namespace {
 
-/// Where nearly nothing is let through any more, one sample makes no difference, or programs have stopped. Some
-/// stop at 0.95 or 0.98: if enough rays let more through, the others do not count.
+/// Returns the opacity beyond which rays are not counted: one more sample makes no difference there, or
+/// programs have terminated the ray. Some do so at 0.95 or 0.98: if enough rays let more through, the others do
+/// not count.
 double most_counted_opacity(const std::vector<double>& opacities) {
   constexpr double nearly_opaque = 0.99;
   constexpr double surely_before_the_stop = 0.9;
@@ -181,10 +183,10 @@ std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchConte
   const std::vector<double> counts = march.sum ? counts_from_amounts(amounts) : counts_from_opacities(amounts);
   if (counts.empty() && march.sum) return "the colours of a ray's samples do not add up";
   if (counts.empty()) return "the samples of a ray are not composed by over (a plain sum, or lighting)";
-  // Colour over opacity stays what it is for one sample.
+  // Colour over opacity must be the same as for one sample.
   const std::size_t longest = std::size_t(most - amounts.begin());
   float brightest = brightest_channel(colours[longest]);
-  // Colours that are seen over a background are as exact as that is bright.
+  // Colours that are seen over a background are as exact as that background is bright.
   if (march.background)
     brightest = std::max(brightest, brightest_channel(over_background(*march.background, Rgba{})));
   const float most_off = 0.01F * brightest;
@@ -224,7 +226,7 @@ double shortest_seen(FieldProbe& probe, const RaysThroughBox& rays, const volume
     }
     lengths.push_back(length);
   }
-  // Where the window ends before the box does, rays stay long: the shortest of all is the silhouette's.
+  // Where the window cuts off the box, rays stay long: the shortest of all is the silhouette's.
   return *std::min_element(lengths.begin(), lengths.end());
 }
 

@@ -18,11 +18,11 @@ using volume::Rgba;
 
 namespace {
 
-/// What adds up sample by sample: optical depth, or one channel of a sum.
+/// The quantity that adds up sample by sample: optical depth, or one channel of a sum.
 struct Additive {
   bool sum = false;
   std::size_t channel = 3;
-  float most_told = 0.99F;  ///< beyond, programs have stopped
+  float most_told = 0.99F;  ///< beyond it, programs have terminated the ray
 
   std::optional<double> of(const Rgba& ray) const {
     if (!reached(ray) || !(ray[channel] >= 0 && ray[channel] <= most_told)) return std::nullopt;
@@ -30,7 +30,7 @@ struct Additive {
   }
 };
 
-/// The value that adds least alike to the translucent one, and by which channel.
+/// The value whose samples add up least like those of the translucent one, and the quantity that shows it.
 struct Contrast {
   float value = 0;
   Additive amount;
@@ -41,14 +41,14 @@ BackgroundContrast contrast_by(const ShaderBackground& background, const Rgba& r
   return {volume::subtract(volume::scale(colour_of(ray), 1 / double(ray[3])), background.colour), 0};
 }
 
-/// Whether colours tell the opacity of a ray that has samples of both.
+/// Whether colours determine the opacity of a ray that has samples of both.
 bool told_apart(const ShaderBackground& background, const Rgba& a, const Rgba& b) {
   return opacity_of(contrast_by(background, a), contrast_by(background, b), {}).has_value();
 }
 
 std::optional<Contrast> contrast_to(const Rgba& translucent, const March& march,
                                     const std::vector<SeenValue>& values, float most_told) {
-  constexpr double least_told = 0.25;  // of what the translucent one adds
+  constexpr double least_told = 0.25;  // of the translucent value's amount
   constexpr float below_limit = 1e-4F;
   std::optional<Contrast> best;
   double most = 0;
@@ -61,7 +61,7 @@ std::optional<Contrast> contrast_to(const Rgba& translucent, const March& march,
       const auto other = amount.of(seen.ray);
       if (!other || *other > 2 * *own) continue;
       if (march.background && !told_apart(*march.background, translucent, seen.ray)) continue;
-      // What looks like the background may hide what lies behind.
+      // A value that looks like the background may hide what lies behind it.
       if (march.background && !(seen.ray[3] > 0) && table_at(march.table, seen.value)[3] > 0) continue;
       const double told = std::abs(*other - *own);
       if (told < least_told * *own || told <= most) continue;
@@ -72,8 +72,8 @@ std::optional<Contrast> contrast_to(const Rgba& translucent, const March& march,
   return best;
 }
 
-/// The same on rays so short that the translucent value lets half of the light through: of long ones all may be
-/// nearly opaque.
+/// Likewise on rays so short that the translucent value lets half of the light through: on long ones, all
+/// values may be nearly opaque.
 std::optional<Contrast> contrast_on_short_rays(const March& march, const std::vector<SeenValue>& values,
                                                float most_told) {
   const auto sample_of = [&](float value) { return table_at(march.table, value); };
@@ -87,7 +87,7 @@ std::optional<Contrast> contrast_on_short_rays(const March& march, const std::ve
   return contrast_to(ray_of(march, sample_of(march.translucent), samples), march, shorter, most_told);
 }
 
-/// Steps from the ray's beginning to the plane, less those to its first sample; none where it does not cross.
+/// Returns the steps from the ray's first sample to the plane; null if the ray does not cross the plane.
 std::optional<double> steps_to_plane(const FieldProbe::SplitField& field, const WayThroughBox& through,
                                      const volume::RaySteps& steps, const SplitRay& ray) {
   const double part = (field.plane - through.entry[field.axis]) / through.way[field.axis];
@@ -106,22 +106,22 @@ bool lies_as_said(double front, double samples, double to_plane) {
   return false;
 }
 
-/// How many of `samples` samples have the first of two values, going by what a ray adds up whose samples all
-/// have the first, the second, or some of each.
+/// Returns how many of `samples` samples have the first of two values, given the amounts along a ray whose
+/// samples all have the first, all the second, or some of each.
 double samples_of_first(double samples, double all_first, double all_second, double some_of_each) {
   constexpr double nothing = 0.5;  // of a sample of the second value
   constexpr double rounding = 0.1;
   const double one = all_second / samples;
   if (!(all_first > 0 && all_first < nothing * one))
     return samples * (some_of_each - all_second) / (all_first - all_second);
-  // So little may be what a ray shows at least, however many samples it has (vispy: 0.001), or none of it where
-  // the second value comes first.
+  // So little may be a floor that the program sets for any ray (vispy: 0.001); it may be missing where the
+  // second value comes first.
   const double second = some_of_each / one;
   const double whole = std::floor(second + rounding);
   return samples - (second - whole <= all_first / one + rounding ? whole : second);
 }
 
-/// Counts samples before the planes of fields; needs one at least.
+/// Counts samples in front of the planes of fields; needs one field at least.
 class SplitCounting {
  public:
   SplitCounting(FieldProbe& probe, const Additive& amount, bool premultiplied_already,
@@ -130,13 +130,13 @@ class SplitCounting {
     for (const FieldProbe::SplitField& field : fields) all_.push_back({field, {}});
   }
 
-  /// The rays of these pixels of the viewport.
+  /// Adds the rays of these pixels of the viewport.
   void add(const volume::Rect& pixels);
-  /// None where samples cannot be counted.
+  /// Returns the rays with their counts; empty if samples cannot be counted.
   std::vector<SplitRays> counted();
 
  private:
-  /// What is added up along a ray through each of the two values, and through each of the fields.
+  /// What adds up along a ray through each of the two values, and through each of the fields.
   struct Amounts {
     double before = 0;
     double behind = 0;
@@ -202,9 +202,10 @@ std::size_t longest_axis(const volume::Vec3& way) {
   return longest;
 }
 
-/// Of a field that is split at a part of the box's way along an axis; none outside of the texture.
+/// Returns the plane that splits a field at a fraction of the box's extent along an axis; null outside the
+/// texture.
 std::optional<double> plane_at(const volume::Box& box, std::size_t axis, double part) {
-  // A box may reach beyond the texture by a texel, and a thin one lie there with most of its inside.
+  // A box may extend a texel beyond the texture, and most of a thin one may lie there.
   const double low = std::max(box.low[axis], 0.0);
   const double high = std::min(box.high[axis], 1.0);
   const double place = low + part * (high - low);
@@ -213,11 +214,11 @@ std::optional<double> plane_at(const volume::Box& box, std::size_t axis, double 
   return std::nullopt;
 }
 
-/// Across the other axes that rays like this one cross steeply enough: a coordinate may be right along one axis
-/// and wrong along another.
+/// Adds planes perpendicular to the other axes, if rays like this one cross them steeply enough: a coordinate
+/// may be right along one axis and wrong along another.
 void add_other_axes(const volume::Box& box, const volume::Vec3& way,
                     std::vector<FieldProbe::SplitField>& fields) {
-  constexpr double least_crossed = 0.3;  // of the longest part of the way
+  constexpr double least_crossed = 0.3;  // of the path's largest component
   const FieldProbe::SplitField first = fields.front();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (axis == first.axis || std::abs(way[axis]) < least_crossed * std::abs(way[first.axis])) continue;
@@ -252,7 +253,7 @@ std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& prob
   const auto way = rays.way(middle[0], middle[1]);
   const auto translucent = std::ranges::find(values, march.translucent, &SeenValue::value);
   if (!way || translucent == values.end()) return {};
-  // Below the limits of opacity that programs usually have.
+  // Below the opacity limits that programs usually have.
   constexpr float below_limits = 0.96F;
   constexpr float below_nearly_opaque = 0.99F;
   auto contrast = contrast_to(translucent->ray, march, values, below_limits);

@@ -27,11 +27,11 @@ double distance(const Vec3& a, const Vec3& b) {
   return volume::length(volume::subtract(a, b));
 }
 
-/// Rays that have the same number of samples, told by their colour.
+/// Rays that have the same number of samples, recognised by their colour.
 struct ColourLevel {
   Ray ray;
   Vec3 colour;
-  double along = 0;  ///< from the colour of the shortest ray towards that of the longest
+  double along = 0;  ///< distance from the colour of the shortest ray, towards that of the longest
 };
 
 class BackgroundSearch {
@@ -43,14 +43,14 @@ class BackgroundSearch {
   std::optional<FoundBackground> found();
 
  private:
-  /// Colours of all values on a ray; none where a fragment is missing or has another alpha.
+  /// Returns the colours of all values on a ray; null if a fragment is missing or has another alpha.
   std::optional<std::vector<Vec3>> colours_on(const Ray& ray);
   std::vector<std::size_t> clearest_values();
   std::vector<ColourLevel> levels_of(float value);
   bool take_levels(const std::vector<ColourLevel>& levels);
   bool take_background();
   void add_longer_rays();
-  /// How many samples a longer ray has, by the values that tell best; null where none does.
+  /// Returns how many samples a longer ray has, by the value that shows it best; null if none does.
   std::optional<double> samples_on(const std::vector<Vec3>& colours) const;
   BackgroundContrast contrast(std::size_t value) const;
 
@@ -60,10 +60,10 @@ class BackgroundSearch {
   const std::vector<float>& values_;
   std::optional<float> alpha_;
   std::vector<Vec3> longest_;  ///< colours of all values on the longest ray
-  std::optional<Ray> empty_;   ///< one without samples
+  std::optional<Ray> empty_;   ///< a ray without samples
   std::vector<Ray> places_;
   std::vector<double> samples_;             ///< of each place, in ascending order
-  std::vector<std::vector<Vec3>> colours_;  ///< of each place, those of all values
+  std::vector<std::vector<Vec3>> colours_;  ///< by place and value
   ShaderBackground background_;
 };
 
@@ -81,7 +81,7 @@ std::optional<std::vector<Vec3>> BackgroundSearch::colours_on(const Ray& ray) {
   return colours;
 }
 
-/// Those whose colour goes on growing where rays are short, spread over how clearly it does.
+/// Returns three values whose colours keep growing on short rays: the clearest, and two that are less clear.
 std::vector<std::size_t> BackgroundSearch::clearest_values() {
   const auto shorter = colours_on(ray_of_length(rays_, texels_, 1.5));
   const auto longer = colours_on(ray_of_length(rays_, texels_, 12));
@@ -121,7 +121,8 @@ std::vector<ColourLevel> BackgroundSearch::levels_of(float value) {
   return levels;
 }
 
-/// Three steps between four levels, each the shorter by the same factor. Of a sum they are of one length.
+/// Takes three steps between four levels, if each is shorter by the same factor. (Those of a sum have one
+/// length.)
 bool BackgroundSearch::take_levels(const std::vector<ColourLevel>& levels) {
   if (levels.size() < 4) return false;
   std::array<double, 3> steps{};
@@ -140,7 +141,7 @@ bool BackgroundSearch::take_levels(const std::vector<ColourLevel>& levels) {
     samples_.push_back(double(i + 1));
     colours_.push_back(std::move(*colours));
   }
-  // Where all values look alike there was no sample yet.
+  // If all values look alike, this ray has no sample yet.
   const bool begins_empty = std::ranges::all_of(colours_.front(), [&](const Vec3& colour) {
     return distance(colour, colours_.front().front()) <= 10 * float_rounding;
   });
@@ -154,7 +155,7 @@ bool BackgroundSearch::take_levels(const std::vector<ColourLevel>& levels) {
   return true;
 }
 
-/// The background is one step before the colour of one sample, whatever the value.
+/// Finds the background: it lies one step before the colour of one sample, whatever the value.
 bool BackgroundSearch::take_background() {
   constexpr double clear = 0.01;
   constexpr double same = 5e-3;
@@ -174,13 +175,13 @@ bool BackgroundSearch::take_background() {
   }
   if (empty_) best = background_.colour;
   if (backgrounds.empty() && !empty_) return false;
-  // A first ray of more than one sample shows another background with every value.
+  // If the first ray had more than one sample, every value would give another background.
   const auto others =
       std::ranges::count_if(backgrounds, [&](const Vec3& one) { return distance(one, best) > same; });
   if (others > std::ptrdiff_t(backgrounds.size() / 10)) return false;
   background_.colour = best;
   if (empty_) return true;
-  // A value that shows nothing tells it exactly.
+  // An invisible value gives the background exactly.
   for (std::size_t i = 0; i < values_.size(); ++i) {
     if (distance(longest_[i], best) > same || distance(longest_[i], colours_[0][i]) > 10 * float_rounding)
       continue;
@@ -208,7 +209,7 @@ std::optional<double> BackgroundSearch::samples_on(const std::vector<Vec3>& colo
     const BackgroundContrast known = contrast(i);
     const double opacity = opacity_of(known, volume::subtract(colours[i], background_.colour));
     if (opacity < least || opacity > most || known.alpha >= 1) continue;
-    // What one sample shows must stand out of rounding, as the count goes by it.
+    // One sample must exceed rounding, as the count is based on it.
     if (known.alpha * volume::length(known.full) < 1e-3 || std::abs(opacity - 0.5) >= nearest) continue;
     const double count = std::log1p(-opacity) / std::log1p(-known.alpha);
     if (std::abs(count - std::round(count)) > whole) continue;
@@ -249,10 +250,10 @@ std::optional<FoundBackground> BackgroundSearch::found() {
   return std::nullopt;
 }
 
-/// A ray through the middle of the box whose far part is opaque: what is put before that may hide it.
+/// A ray through the middle of the box whose far part is opaque: values in front of it may hide it.
 class HiddenBehind {
  public:
-  /// Null where the eye is inside the box, its middle out of view, or no plane of a field in it.
+  /// Null if the eye is inside the box, its middle is out of view, or no plane of a field lies in it.
   static std::optional<HiddenBehind> in_middle_of(FieldProbe& probe, const ProxyBox& box,
                                                   const volume::RaySteps& steps, const March& march);
 
@@ -260,7 +261,8 @@ class HiddenBehind {
     const Rgba ray = seen(probe, value);
     return reached(ray) && ray[3] < least_;
   }
-  /// Of one sample, by how much of what lies behind is seen; null where it is too little to tell.
+  /// Returns the opacity of one sample, by how much of what lies behind is visible; null if that is too little
+  /// to measure.
   std::optional<float> opacity_of_sample(FieldProbe& probe, float value) const;
 
  private:
@@ -274,8 +276,8 @@ class HiddenBehind {
   int row_ = 0;
   FieldProbe::SplitField opaque_;
   bool forwards_ = true;  ///< the ray goes along the axis of the field
-  float least_ = 0;       ///< opacity of what lies behind
-  double in_front_ = 0;   ///< samples before the plane
+  float least_ = 0;       ///< the far part is hidden if the ray's opacity is less
+  double in_front_ = 0;   ///< samples in front of the plane
   float behind_ = 0;      ///< opacity of those behind it
 };
 
@@ -311,7 +313,7 @@ std::optional<HiddenBehind> HiddenBehind::in_middle_of(FieldProbe& probe, const 
   if (fields.empty()) return std::nullopt;
   ray.opaque_ = fields.front();
   ray.forwards_ = (*way)[ray.opaque_.axis] > 0;
-  // A ray that the program ends early is no more opaque than that.
+  // A ray that the program terminates early is no more opaque than its limit.
   ray.least_ = std::min(ray_of(march, *most, samples)[3], march.opacity_limit) - visible;
   const double length = steps_of_way(steps, *way);
   const double all = samples_of_length(steps, length);
@@ -323,7 +325,7 @@ std::optional<HiddenBehind> HiddenBehind::in_middle_of(FieldProbe& probe, const 
   return ray;
 }
 
-/// Entries from `first` up to `end`, linear between their neighbours.
+/// Fills entries from `first` up to `end` linearly between their neighbours.
 void fill_between(std::vector<Rgba>& entries, std::size_t first, std::size_t end) {
   const Rgba low = entries[first - 1];
   const Rgba high = entries[end];
@@ -371,12 +373,12 @@ bool remove_known_background(const MarchContext& measured, FieldProbe& probe, co
 
 namespace {
 
-/// Gives entries that look like the program's background their opacity; false where it cannot be told.
+/// Gives entries that look like the program's background their opacity; false if it cannot be measured.
 bool measure_unseen(const HiddenBehind& hidden_behind, FieldProbe& probe, std::size_t first, std::size_t end,
                     March& march) {
   constexpr std::size_t most_measured = 128;  // each takes a draw
   if (end - first > most_measured) return false;
-  // After early ray termination, how much is seen depends on what lies in front.
+  // With early ray termination, how much is visible depends on what lies in front.
   if (march.opacity_limit < 1) return false;
   std::vector<Rgba>& entries = march.table.entries;
   for (std::size_t entry = first; entry < end; ++entry) {
@@ -394,7 +396,7 @@ bool measure_unseen(const HiddenBehind& hidden_behind, FieldProbe& probe, std::s
 }  // namespace
 
 bool fill_unseen(FieldProbe& probe, const ProxyBox& box, const volume::RaySteps& steps, March& march) {
-  constexpr std::size_t longest_filled = 4;  // a value of 8 bits has as many entries
+  constexpr std::size_t longest_filled = 4;  // an 8-bit value spans as many entries
   constexpr std::size_t tested_apart = longest_filled;
   if (!march.background) return true;
   const auto hidden_behind = HiddenBehind::in_middle_of(probe, box, steps, march);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a program puts its rays over a background colour of its own, told by fields of one value on the
-// shortest rays: their colours go from the background towards the value's own in steps, each of which is
-// shorter than the one before by the transparency of a sample. Nothing needs to be known of the program's
-// steps.
+// Detects a program that puts its rays over a background colour of its own, by constant fields on the shortest
+// rays: their colours go from the background towards the value's own in steps, each of which is shorter than
+// the one before by the transparency of a sample. The program's ray steps need not be known.
 #pragma once
 
 #include <optional>
@@ -19,28 +18,28 @@ struct FoundBackground {
   std::vector<CountedPlace> rays;  ///< shortest first, of one sample, two, three, and more
 };
 
-/// Null where fragments are of another kind: their alpha varies, their samples are a sum, an extreme or nothing
-/// that is known. `texels`: steps of one texel; `values`: all over the range.
+/// Null if fragments are of another kind: their alpha varies, or their samples are a sum, an extreme or nothing
+/// that is known. `texels`: steps of one texel; `values`: spread over the range.
 std::optional<FoundBackground> find_background(FieldProbe& probe, const RaysThroughBox& rays,
                                                const volume::RaySteps& texels,
                                                const std::vector<float>& values);
 
-/// Whether fragments of this alpha leave the program's own colour and nothing of what was there before.
+/// Whether fragments of this alpha leave nothing of what was there before.
 bool hides_what_was_there(const Pipeline& pipeline, float alpha);
 
-/// Shows `probe` the rays without the background that the program puts them over. Null: it does no such thing,
-/// or its fragments do not replace what was there.
+/// Makes `probe` return rays without the background that the program puts them over. Null if it has none, or if
+/// its fragments do not replace what was there.
 std::optional<ShaderBackground> remove_background(const MarchContext& measured, FieldProbe& probe,
                                                   const RaysThroughBox& rays);
 
-/// The same of the background of `march`, where it has one; false where it is another now.
+/// Likewise for the background of `march`, if it has one; false if the background is another one now.
 bool remove_known_background(const MarchContext& measured, FieldProbe& probe, const RaysThroughBox& rays,
                              const March& march);
 
-/// Values that have the colour of the program's background look as if they showed nothing, but may hide what
-/// lies behind them, as fields tell that are opaque behind a plane. A few entries of march.table between others
-/// that are seen are filled in; of more, these fields tell the opacity. False where that cannot be looked at.
-/// `probe` shows rays without their background, whose samples lie on `steps`.
+/// Values with the colour of the program's background look invisible, but may hide what lies behind them, as
+/// fields that are opaque behind a plane reveal. Up to four such entries of march.table between visible ones
+/// are interpolated; for others, these fields give the opacity. False if it cannot be measured. `probe` returns
+/// rays without their background, whose samples lie on `steps`.
 bool fill_unseen(FieldProbe& probe, const ProxyBox& box, const volume::RaySteps& steps, March& march);
 
 }  // namespace understudy::spu

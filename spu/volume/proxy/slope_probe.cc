@@ -21,16 +21,16 @@ using volume::Vec3;
 
 namespace {
 
-/// By so much of the range of values does a field rise along its steepest axis. Neighbours that are a texel
-/// apart then differ by hundreds of a float's last bits, and the values on the ray by a few entries of the
-/// table.
+/// How far a field rises along its steepest axis, as a fraction of the range of values. Neighbours that are a
+/// texel apart then differ by hundreds of a float's last bits, and the values on the ray by a few entries of
+/// the table.
 constexpr float least_share = 0.003F;
 
-/// Slopes are tried so many times as steep.
+/// Multiples of the least rise that are tried.
 constexpr std::array<double, 2> steepnesses{16, 4};
 
-/// So steep that no guard against a division by zero matters: a texel of hundreds along an axis is tens of the
-/// range of values from the next.
+/// So steep that no guard against a division by zero matters: in a volume of hundreds of texels along an axis,
+/// neighbouring texels differ by tenths of the range of values.
 constexpr double steepest_under_plain_tables = 16384;
 
 constexpr float least_seen = 0.08F;
@@ -42,12 +42,12 @@ std::optional<LitRay> ray_at(const RaysThroughBox& rays, double x, double y) {
   return LitRay{x, y, *way, {}, {}};
 }
 
-/// Of gradients whose largest component is 1, that over which the values on a ray differ most.
+/// Returns the gradient, of largest component 1, over which the values on a ray differ most.
 Vec3 rising_most(const Vec3& way) {
   return {std::copysign(1.0, way[0]), std::copysign(1.0, way[1]), std::copysign(1.0, way[2])};
 }
 
-/// The mean of a ray's samples' places, each weighted by what is seen of it.
+/// Returns the mean place of a ray's samples, each weighted by what is visible of it.
 double mean_place_seen(std::span<const double> places, std::span<const double> opacities) {
   double through = 1;
   double sum = 0;
@@ -101,7 +101,8 @@ float SlopeProbe::least_rise() const {
   return least_share * (range_[1] - range_[0]);
 }
 
-/// Gradients that count texels see those of the field: as far as can be, it has the volume's proportions.
+/// Gradients that count texels use the field's texels, so the field has the volume's proportions, as far as
+/// possible.
 std::array<int, 3> SlopeProbe::field_size(int texels) const {
   constexpr double fewest = 4;
   if (!counts_texels()) return {texels, texels, texels};
@@ -155,7 +156,7 @@ std::vector<Rgba> SlopeProbe::over(const LitRay& ray, const std::vector<float>& 
 
 SlopeProbe::SamplesOverRise SlopeProbe::samples_over_rise(const LitRay& ray, float value,
                                                           double rise_of_way) const {
-  constexpr int corrections = 3;  // what is seen depends on the values, which depend on what is seen
+  constexpr int corrections = 3;  // what is visible depends on the values, and the values on what is visible
   const std::vector<double> places = places_on_way(march_.steps, ray.way.way);
   SamplesOverRise samples{double(value), std::vector<double>(places.size(), sample_opacity(ray, value))};
   for (int i = 0; i < corrections; ++i) {
@@ -174,8 +175,8 @@ std::vector<double> SlopeProbe::opacities_over(const LitRay& ray, float value, c
 
 double SlopeProbe::allowed_steepness(const LitRay& ray, float value, const Vec3& gradient) const {
   if (!ray.tables.empty()) return steepest_under_plain_tables;
-  // Where colours change evenly around the value, what lies before it and what lies behind it make up for each
-  // other, but for what opacity hides.
+  // Where colours change linearly around the value, samples in front of it and behind it compensate each other,
+  // but for what opacity hides.
   constexpr double bent = 0.015;      // of the brightest channel
   constexpr double same_tint = 0.15;  // likewise
   constexpr float same_opacity = 0.15F;
@@ -210,7 +211,7 @@ double SlopeProbe::allowed_steepness(const LitRay& ray, float value, const Vec3&
 Vec3 SlopeProbe::risen(const Vec3& gradient, double steepness, const std::array<int, 3>& size) const {
   Vec3 risen = volume::scale(gradient, steepness * double(least_rise()));
   if (!counts_texels()) return risen;
-  // From texel to texel it rises as it does in the volume.
+  // From texel to texel, the field rises as it would in the volume.
   const double longest = double(*std::ranges::max_element(size)) / *std::ranges::max_element(size_);
   for (std::size_t axis = 0; axis < 3; ++axis) risen[axis] *= size[axis] / (longest * size_[axis]);
   return risen;
@@ -219,7 +220,7 @@ Vec3 SlopeProbe::risen(const Vec3& gradient, double steepness, const std::array<
 EvenRise SlopeProbe::rise(const Vec3& gradient, double steepness, const std::array<double, 3>& reach,
                           int texels) const {
   EvenRise field{volume::scale(gradient, steepness * double(least_rise())), field_size(texels), {}};
-  // Who counts texels sees the rise from texel to texel: that of a volume of as many texels.
+  // Gradients that count texels see the rise from texel to texel, as in a volume of that many texels.
   if (counts_texels())
     field.gradient = volume::scale(
         field.gradient, double(*std::ranges::max_element(size_)) / *std::ranges::max_element(field.texels));
@@ -252,12 +253,12 @@ double SlopeProbe::allowed_steepness(const LitRay& ray) const {
 }
 
 float SlopeProbe::rise_along(const LitRay& ray, const Vec3& gradient, double steepness) const {
-  // The pixel that is drawn is another one than the ray by a part of a pixel.
+  // The pixel that is drawn lies beside the ray by a fraction of a pixel.
   constexpr double beside_ray = 1.0 / 512;
   const std::array<int, 3> size = field_size(slope_texels);
   const Vec3 slope = risen(gradient, steepness, size);
   double rise = std::abs(volume::dot(slope, ray.way.way)) / 2 + beside_ray * volume::length(slope);
-  // Half a texel from the texture's ends a field is even.
+  // Within half a texel of the texture's ends, a field is constant.
   const Vec3 exit = volume::add(ray.way.entry, ray.way.way);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (const double place : {ray.way.entry[axis], exit[axis]})
@@ -315,7 +316,7 @@ LitRay SlopeProbe::with_values(LitRay ray) {
   if (std::ranges::any_of(candidates, is_moderate))
     std::erase_if(candidates, [&](std::size_t i) { return !is_moderate(i); });
   const Vec3 steepest = rising_most(ray.way.way);
-  // Where opacity has a step beside the value, a slope shows another one than an even field.
+  // If opacity has a step near the value, a slope shows another opacity than a constant field.
   const float farthest = 1.5F * rise_along(ray, steepest, 1);
   const auto keeps_opacity = [&](std::size_t i) {
     constexpr double same_opacity = 0.3;
@@ -345,7 +346,7 @@ LitRay SlopeProbe::with_values(LitRay ray) {
   }
   while (!candidates.empty() && ray.values.size() < most) {
     const std::vector<Tint> chosen = tints_of(ray.base);
-    // The first is the brightest; then the one that is farthest from all others.
+    // First the brightest value, then the one that differs most from all that were chosen.
     const auto distance = [&](std::size_t i) {
       const Tint tint = tint_of(shown[3 * i + 1]);
       if (chosen.empty()) return brightness(i);

@@ -39,26 +39,26 @@ std::vector<BaseNearby> base_nearby(SlopeProbe& slopes, const LitRay& ray, float
   return nearby;
 }
 
-/// A gradient square to a ray, and not across the face by which it enters: half a texel from there a field is
-/// even. Such a field may rise by much.
+/// Returns a gradient perpendicular to a ray, and parallel to the face by which it enters (within half a texel
+/// of the face, a field is constant). Such a field may rise by much.
 volume::Vec3 beside(const volume::Vec3& way, std::size_t axis_of_entry) {
   volume::Vec3 entry{};
   entry[axis_of_entry] = 1;
   const volume::Vec3 square = volume::cross(way, entry);
   const double length = volume::length(square);
-  // Any will do for a ray straight across the face.
+  // For a ray perpendicular to the face, any gradient in the face will do.
   if (!(length > 1e-3 * volume::length(way))) return {entry[1], entry[2], entry[0]};
   return volume::scale(square, 1 / length);
 }
 
-/// A gradient, and how many times the least rise that tells it is looked at.
+/// A gradient, and the multiples of the least rise by which it is probed.
 struct Slope {
   volume::Vec3 gradient;
   std::array<double, 3> steepness;
 };
 
-/// Nearly beside the ray as steep as its colours allow, and beside it, where values on it hardly differ, much
-/// steeper.
+/// Returns slopes nearly perpendicular to the ray, as steep as its colours allow, and slopes perpendicular to
+/// it, much steeper, as values on the ray hardly differ there.
 std::array<Slope, 2> slopes_aside(const SlopeProbe& slopes, const LitRay& ray, const LightSpace& directions,
                                   std::size_t axis_of_entry) {
   const double measured = slopes.steepness();
@@ -66,9 +66,9 @@ std::array<Slope, 2> slopes_aside(const SlopeProbe& slopes, const LitRay& ray, c
            {beside(ray.way.way, axis_of_entry), {measured, 100, 400}}}};
 }
 
-/// Whether slopes that face the eye show what slopes a quarter as steep do. What a guard against a division by
-/// zero takes from a normal's length shrinks as slopes get steeper: by a third of what is allowed here, at
-/// most, is the light wrong that is measured.
+/// Whether slopes that face the eye look like slopes a quarter as steep. What a guard against a division by
+/// zero takes from a normal's length shrinks as slopes get steeper: the light that is measured is wrong by at
+/// most a third of what is allowed here.
 bool faces_alike_when_gentler(SlopeProbe& slopes, const LitRay& ray, const LightSpace& directions) {
   constexpr double same = 0.05;
   const volume::Vec3 facing = directions.gradient(0, 0);
@@ -83,13 +83,12 @@ bool faces_alike_when_gentler(SlopeProbe& slopes, const LitRay& ray, const Light
   return true;
 }
 
-/// Whether a slope has the opacity of values nearby, and these colours, but for what values on the ray differ
-/// by.
+/// Whether a slope has the opacity of values nearby, and these colours, up to what values on the ray differ by.
 bool is_as_expected(SlopeProbe& slopes, const LitRay& ray, const volume::Vec3& gradient, double steepness,
                     const std::vector<Rgba>& shown, const std::vector<Tint>& expected) {
   constexpr float same_opacity = 0.03F;
   constexpr double same = 0.05;
-  constexpr double brighter = 4;  // than the base colours, at most, are slopes taken to be at this angle
+  constexpr double brighter = 4;  // times the base colours: the most that slopes at this angle are taken for
   const std::vector<BaseNearby> base = base_nearby(slopes, ray, slopes.rise_along(ray, gradient, steepness));
   const std::vector<Tint> tints = tints_of(shown);
   for (std::size_t v = 0; v < shown.size(); ++v) {

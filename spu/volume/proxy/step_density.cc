@@ -8,15 +8,15 @@
 namespace understudy::spu {
 namespace {
 
-/// How well the sampled stretches are whole numbers of steps: 1 is exactly, 0 not at all.
+/// How close the sampled stretches are to whole numbers of steps: 1 is exactly, 0 not at all.
 double wholeness(std::span<const SampledWay> ways, double density) {
   double sum = 0;
   for (const SampledWay& way : ways) sum += std::cos(2 * M_PI * density * way.sampled);
   return sum / double(ways.size());
 }
 
-/// The wholeness of some of the ways under one density after another, all `apart`. What the next one adds is a
-/// turn by a constant angle, which takes no cosine: there are up to 80,000 densities.
+/// The wholeness of some of the paths for a sequence of densities, each `apart` from the last. From one to the
+/// next, each term turns by a constant angle, which takes no cosine: there are up to 80,000 densities.
 class WholenessScan {
  public:
   WholenessScan(std::span<const SampledWay> ways, double density, double apart) {
@@ -52,8 +52,8 @@ class WholenessScan {
 
 std::optional<double> step_density(std::span<const SampledWay> ways) {
   constexpr double whole_enough = 0.7;
-  constexpr double by_chance = 0.3;    // that the few ways of the scan are less whole than all are
-  constexpr double most_steps = 2000;  // more are not told apart by colours
+  constexpr double by_chance = 0.3;    // by which the scan's few paths may be less whole than all are
+  constexpr double most_steps = 2000;  // colours do not resolve more
   std::vector<double> behind;
   double longest = 0;
   for (const SampledWay& way : ways) {
@@ -61,7 +61,7 @@ std::optional<double> step_density(std::span<const SampledWay> ways) {
     longest = std::max(longest, way.whole);
   }
   if (behind.empty()) return std::nullopt;
-  // Rays end anywhere within their last step: the way behind it is a step at most.
+  // Rays end anywhere within their last step: the path behind it is at most one step.
   const auto widest = behind.begin() + std::ptrdiff_t(0.95 * double(behind.size()));
   std::nth_element(behind.begin(), widest, behind.end());
   if (!(*widest * most_steps > longest)) return std::nullopt;

@@ -19,7 +19,7 @@ std::array<double, 6> products(const Vec3& d) {
   return {d[0] * d[0], d[1] * d[1], d[2] * d[2], 2 * d[0] * d[1], 2 * d[0] * d[2], 2 * d[1] * d[2]};
 }
 
-/// Gaussian elimination with pivoting; null when singular. Unknowns are scaled by the diagonal first.
+/// Gaussian elimination with pivoting; null if singular. Unknowns are scaled by the diagonal first.
 template <std::size_t N>
 std::optional<std::array<double, N>> solved(std::array<std::array<double, N + 1>, N> m) {
   std::array<double, N> unit{};
@@ -87,7 +87,7 @@ std::optional<std::array<double, 9>> root(const std::array<double, 6>& g) {
   return r;
 }
 
-/// What of the rays is no rounding.
+/// The fraction of the rays that rounding does not explain.
 double unexplained_part(std::span<const CountedRay> rays, const std::array<double, 6>& g, double offset,
                         double rounding) {
   std::size_t off = 0;
@@ -108,7 +108,7 @@ std::optional<StepFit> finished(std::span<const CountedRay> rays, const std::arr
 /// Gauss-Newton for the first N products' coefficients.
 template <std::size_t N>
 std::optional<StepFit> fit_products(std::span<const CountedRay> rays, double offset) {
-  constexpr double rounding = 0.55;  // half a step, and what the fit itself leaves
+  constexpr double rounding = 0.55;  // half a step, plus the error of the fit
   const auto row_of = [](const CountedRay& ray) {
     const auto all = products(ray.way);
     std::array<double, N> row{};
@@ -139,7 +139,7 @@ std::optional<StepFit> fit_products(std::span<const CountedRay> rays, double off
   return finished(rays, g, offset, rounding);
 }
 
-/// Every count allows an interval of the one unknown; where most of them meet is the answer.
+/// Every count allows an interval of the one unknown; the result is where most of them overlap.
 std::optional<StepFit> fit_one_length(std::span<const CountedRay> rays, const Vec3& axes, double offset) {
   constexpr double rounding = 0.51;
   struct End {
@@ -171,7 +171,7 @@ std::optional<StepFit> fit_one_length(std::span<const CountedRay> rays, const Ve
 
 using Fitting = std::optional<StepFit> (*)(std::span<const CountedRay>, double);
 
-/// Adds those that explain the counts, and remembers the best one.
+/// Adds the fits that explain the counts, and keeps the best one.
 void add_fits(const std::function<std::optional<StepFit>(double)>& fit, std::vector<StepFit>& good,
               std::optional<StepFit>& best) {
   for (const double offset : {-0.5, 0.0, 0.5}) {
@@ -195,7 +195,7 @@ bool alike(const std::array<double, 9>& one, const std::array<double, 9>& other)
 
 std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, std::span<const Vec3> spaces) {
   constexpr std::size_t fewest = 64;
-  constexpr double shortest = 2;  // samples: some programs take one where there is room for none
+  constexpr double shortest = 2;  // samples: some programs take one on rays too short for any
   std::vector<CountedRay> counted;
   std::copy_if(rays.begin(), rays.end(), std::back_inserter(counted),
                [](const CountedRay& ray) { return ray.samples >= shortest; });
@@ -226,7 +226,7 @@ std::vector<double> counts_from_amounts(const std::vector<double>& depths) {
   std::vector<double> sorted = depths;
   std::sort(sorted.begin(), sorted.end());
   if (sorted.empty() || !(sorted.back() > 0)) return {};
-  // The smallest step between different depths is one sample's; anything far smaller is rounding.
+  // The smallest gap between different depths is one sample's; anything far smaller is rounding.
   const double noise = 1e-5 + 1e-5 * sorted.back();
   double one = sorted.back();
   for (std::size_t i = 1; i < sorted.size(); ++i) {

@@ -9,8 +9,9 @@
 
 namespace understudy::spu {
 
-/// How long the axes of texture space are in each of them: in texels of a texture of `size`, in the world that
-/// the camera shows, and in texture space itself. Rays of nearly one direction do not tell one from the other.
+/// Returns how long the axes of texture space are in each of them: in texels of a texture of `size`, in the
+/// world that the camera shows (if it shows it), and in texture space itself. Rays of nearly one direction do
+/// not distinguish them.
 std::vector<volume::Vec3> step_spaces(const std::array<int, 3>& size, const volume::Matrix4& texture_to_clip,
                                       const FieldProbe& probe);
 

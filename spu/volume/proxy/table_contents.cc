@@ -45,7 +45,7 @@ std::vector<TableContents> table_contents(const GlContext& context, const Run& r
 }
 
 bool only_corrected(std::span<const TableContents> before, std::span<const TableContents> now, double factor) {
-  // Half a step of 8 bits, and the application's own rounding.
+  // Half a step of 8 bits, plus the application's own rounding.
   constexpr double tolerance = 0.0025;
   const auto corrected = [&](const TableContents& then, const TableContents& today) {
     if (then.sampler_location != today.sampler_location || today.rgba.empty()) return false;

@@ -1,10 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs a viewer bare and under Understudy, and says what was substituted and what a frame took.
+# Runs a viewer bare and under Understudy, and prints what was substituted and the median time of a frame.
 #
 #   before-and-after.sh FOLDER viewer args…
 #
-# FOLDER gets report.json and the viewer's own words (bare.log, understudy.log).
+# Writes report.json and the output of both runs (bare.log, understudy.log) to FOLDER.
 set -eu
 folder=$1
 shift

@@ -13,7 +13,7 @@ namespace {
 constexpr unsigned long mebibyte = 1UL << 20;
 constexpr unsigned long unlimited = ~0UL;
 
-/// Pages mapped by this process: the first number there.
+/// Pages mapped by this process: the first number in /proc/self/statm.
 unsigned long mapped_pages() {
   char text[32] = {};
   const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
@@ -34,7 +34,7 @@ unsigned long address_space_left() {
 
 unsigned long address_space_needed() {
   cpu_set_t allowed;
-  // There may be more of them than fit into the set: then it fails, and all count.
+  // More processors than the set can hold make the call fail; then all online processors count.
   const long processors =
       sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? CPU_COUNT(&allowed) : sysconf(_SC_NPROCESSORS_ONLN);
   return 256 + 160 * static_cast<unsigned long>(processors > 0 ? processors : 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The auditor, for LD_AUDIT: the loader asks this library where to look for each library it is about to load.
 //
-// It lives in a link namespace with a C library of its own, so it is kept to a few lines of C.
+// It runs in a link namespace with its own C library, so it is restricted to a few lines of C.
 #include <dlfcn.h>
 #include <limits.h>
 #include <link.h>
@@ -56,12 +56,12 @@ AUDIT_INTERFACE unsigned la_objopen(struct link_map* map, Lmid_t, uintptr_t* coo
 }
 
 AUDIT_INTERFACE char* la_objsearch(const char* name, uintptr_t* cookie, unsigned flag) {
-  // A stub that is given in the place of a file keeps that file's name, and would look for us beside it.
+  // The loader gives a stub the name of the file that it replaces, so its $ORIGIN would be that file's folder.
   if (strcmp(name, "libunderstudy.so") == 0 && entry_library[0] != '\0') return entry_library;
   const int stub = stub_for(name);
   if (stub < 0 || stubs.path[stub][0] == '\0') return const_cast<char*>(name);
-  // Names are answered before the loader looks for a file. For OSMesa it is let look, until it is at a file
-  // that exists.
+  // Most names are replaced before the loader searches for a file. For OSMesa, the loader searches until it
+  // reaches a file that exists.
   const bool answered_now =
       stub == osmesa_stub ? strchr(name, '/') != nullptr && access(name, R_OK) == 0 : flag == LA_SER_ORIG;
   if (!answered_now) return const_cast<char*>(name);

@@ -46,7 +46,7 @@ Entry* add(const ContextKey& key, std::uintptr_t group, bool desktop_gl) {
   return entry;
 }
 
-/// Another context of the group that the core knows, gone or not.
+/// Another context of the group that the core knows, destroyed or not; null if there is none.
 const Entry* known_companion(const Entry& of) {
   for (const Entry* entry = entries; entry != nullptr; entry = entry->next) {
     if (entry != &of && entry->group == of.group && entry->known_to_core) return entry;
@@ -59,7 +59,7 @@ KnownContext description(const Entry& entry) {
   return {entry.context, companion != nullptr ? companion->context : 0, entry.desktop_gl};
 }
 
-/// True while the core must keep `gone` for the sake of members of its group that it has not met.
+/// True while the core must keep `gone`, because its group has members that the core has not seen yet.
 bool holds_objects_for_others(const Entry& gone) {
   if (!gone.known_to_core || known_companion(gone) != nullptr) return false;
   for (const Entry* entry = entries; entry != nullptr; entry = entry->next) {
@@ -72,7 +72,7 @@ bool holds_objects_for_others(const Entry& gone) {
 
 void note_created(const ContextKey& key, std::uintptr_t share, bool desktop_gl) {
   const Locked locked;
-  // A handle that comes again means that its last bearer went without our seeing it (its display was closed).
+  // A reused handle means that the previous context was destroyed unseen (its display was closed).
   if (Entry* former = find(key)) {
     former->destroyed = true;
     former->current = false;

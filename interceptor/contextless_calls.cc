@@ -22,11 +22,11 @@ constinit std::atomic<std::uint64_t> calls = 0;
 constinit std::atomic<pid_t> caller = 0;
 
 void write_at(int file, std::size_t offset, const void* bytes, std::size_t size) {
-  // What cannot be written is missing from the report, no more.
+  // A failed write only leaves its value out of the report.
   (void)!pwrite(file, bytes, size, static_cast<off_t>(offset));
 }
 
-/// The same file that the core would keep (spu/report/counters.h), with zeros where nothing happened.
+/// Writes the same file that the core would keep (spu/report/counters.h), with zeros for all other counters.
 void leave_counters(const char* folder) {
   char path[PATH_MAX];
   const int length = snprintf(path, sizeof path, "%s/%d.counters", folder, static_cast<int>(getpid()));
@@ -48,7 +48,7 @@ void leave_counters(const char* folder) {
 }
 
 [[gnu::destructor]] void at_library_end() {
-  // A child after fork has its parent's count, and nothing to say of its own.
+  // A forked child inherits its parent's count and has nothing of its own to report.
   if (calls.load() == 0 || caller.load() != getpid() || core_is_out() || core() != nullptr) return;
   const char* folder = secure_getenv("UNDERSTUDY_RUN_DIR");
   if (folder != nullptr && *folder != '\0') leave_counters(folder);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// LD_PRELOAD's second half: applications that open OpenGL by name get the stub instead.
+// The dlopen hook of LD_PRELOAD: applications that open OpenGL by name get the stub instead.
 //
-// glibc looks at who called dlopen (the caller's RUNPATH, its namespace), so every request that is not ours is
-// passed on by a jump, with the caller's return address still on the stack. On x86-64 that jump is written
-// down; elsewhere the compiler makes one of a call in tail position when it optimises, and a plain call, which
-// loses the caller's RUNPATH, when it does not.
+// glibc inspects the caller of dlopen (its RUNPATH, its namespace), so requests that are not for a stub are
+// forwarded by a jump that leaves the caller's return address on the stack. On x86-64 the jump is written in
+// assembly. Elsewhere the compiler turns the tail call into a jump if it optimises; if it does not, the plain
+// call loses the caller's RUNPATH.
 #include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,10 +21,10 @@ namespace understudy::interceptor {
 using Dlopen = void* (*)(const char*, int);
 
 extern "C" {
-/// Read by the jump below.
+/// Target of the jump below.
 __attribute__((visibility("hidden"))) constinit Dlopen understudy_next_dlopen = nullptr;
 
-/// What to ask of the next dlopen: returned in two registers.
+/// The arguments for the next dlopen, returned in two registers.
 struct Request {
   const char* name;
   long mode;
@@ -35,8 +35,8 @@ __attribute__((visibility("hidden"))) Request understudy_route_dlopen(const char
 
 namespace {
 
-/// The C library's own. Whoever else stands in the process and changes what is opened (apitrace gives itself
-/// for every OpenGL) must not see us look for the driver: it would become the driver of which we are its
+/// The C library's own dlopen. Our search for the driver must bypass other hooks of the process that redirect
+/// OpenGL: apitrace substitutes itself for every OpenGL library, so it would become our driver while we are its
 /// driver.
 Dlopen libc_dlopen() {
   static constinit std::atomic<Dlopen> found = nullptr;
@@ -50,18 +50,19 @@ Dlopen libc_dlopen() {
   return function;
 }
 
-/// Where the application's requests go on to.
+/// The dlopen that the application's requests are forwarded to.
 Dlopen next_dlopen() {
   if (understudy_next_dlopen == nullptr) {
-    // Preloaded, we stand before the C library; as what a stub needs, behind it.
+    // If preloaded, this library precedes the C library; loaded as a dependency of a stub, it follows it.
     void* next = dlsym(RTLD_NEXT, "dlopen");
     understudy_next_dlopen = next != nullptr ? reinterpret_cast<Dlopen>(next) : libc_dlopen();
   }
   return understudy_next_dlopen;
 }
 
-/// Is `name` to be answered by that stub? OSMesa's stands only where there is an OSMesa. A program that asks
-/// whether OSMesa is loaded (RTLD_NOLOAD) means the library, not our stub, which it then gets all the same.
+/// Whether the stub replaces `name`. OSMesa's does so only if OSMesa is installed. A program that checks
+/// whether OSMesa is loaded (RTLD_NOLOAD) asks about the real library; if that is loaded, the program gets our
+/// stub.
 bool stub_answers(int stub, const char* name, int& mode) {
   if (stub < 0 || own_stub(stub)[0] == '\0') return false;
   if (stub != osmesa_stub) return true;
@@ -94,7 +95,7 @@ Request understudy_route_dlopen(const char* name, int mode, const void* caller) 
   const bool deep = (mode & RTLD_DEEPBIND) != 0;
   if ((stub >= 0 || deep) && !caller_may_have_the_real_one(caller)) {
     if (stub_answers(stub, name, mode)) name = own_stub(stub);
-    // RTLD_DEEPBIND would make a plugin prefer the OpenGL that it was linked with to us.
+    // With RTLD_DEEPBIND a plugin would prefer the OpenGL library that it was linked with.
     mode &= ~RTLD_DEEPBIND;
   }
   return {name, mode};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The EGL functions that say which context is current, end a frame, or hand out addresses. The others are
+// The EGL functions that create, destroy or switch contexts, end a frame, or return addresses. The others are
 // generated.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -18,7 +18,7 @@ std::uintptr_t number(const void* handle) {
 
 constexpr WindowSystem egl = WindowSystem::egl;
 
-/// EGL_OPENGL_API, EGL_OPENGL_ES_API, EGL_OPENVG_API; 0 when it is not known.
+/// EGL_OPENGL_API, EGL_OPENGL_ES_API or EGL_OPENVG_API; 0 if the query fails.
 EGLint client_type(EGLDisplay display, EGLContext context) {
   static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLContext, EGLint, EGLint*)> query{
       egl, "eglQueryContext"};
@@ -33,7 +33,7 @@ EGLBoolean make_current_egl(EGLDisplay display, EGLSurface draw, EGLSurface read
   if (!concerns_core()) return real_call();
   WantedContext wanted{egl, number(display), number(context), number(draw), number(read)};
   if (context != EGL_NO_CONTEXT && !is_noted({egl, wanted.display, wanted.handle})) {
-    // A wrong handle makes this query fail and leave an error behind; the real call then leaves the same one.
+    // An invalid handle makes this query fail and set an error; the real call then sets the same error.
     const EGLint type = client_type(display, context);
     if (type == EGL_OPENVG_API) return real_call();  // current beside OpenGL, not instead of it
     wanted.desktop_gl_if_new = type == EGL_OPENGL_API;
@@ -138,7 +138,7 @@ UNDERSTUDY_ENTRY VoidFunction eglGetProcAddress(const char* name) {
   return reinterpret_cast<VoidFunction>(own != nullptr ? own : real);
 }
 
-// As in glx.cc: while EGL's library is not open, nothing of it is current.
+// As in glx.cc: no EGL context or surface can be current before EGL's library is open.
 
 UNDERSTUDY_ENTRY EGLContext eglGetCurrentContext() {
   static constinit RealFunction<EGLContext (*)()> real{egl, "eglGetCurrentContext"};

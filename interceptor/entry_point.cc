@@ -15,7 +15,7 @@ namespace understudy::interceptor {
 
 namespace {
 
-/// Of the context that is current on this thread, or of any.
+/// The driver's functions for this thread's current context, or the contextless table.
 const spu::DispatchTable& real_functions() {
   const spu::DispatchTable* driver = entry_thread.state.driver;
   return driver != nullptr ? *driver : driver_table_without_context();
@@ -27,7 +27,7 @@ const spu::DispatchTable& enter_without_context() {
   EntryThread& thread = entry_thread;
   if (thread.level == 0) {
     if (thread.state.calls != nullptr) ++*thread.state.calls;
-    // Nobody will ever want this thread's calls: let the next ones take the short way.
+    // No core will ever need this thread's calls: its next calls take the fast path.
     if (core_is_out()) {
       thread.state.table = &real_functions();
       thread.state.calls = &thread.spare_calls;
@@ -37,7 +37,7 @@ const spu::DispatchTable& enter_without_context() {
 }
 
 void report_missing(const char* name) {
-  // Without a context calls do nothing, and window-system functions that are not offered are not announced.
+  // With remote OpenGL, calls without a context do nothing, and unsupported functions are not announced.
   if (is_remote()) return;
   static constinit std::atomic_flag said{};
   if (said.test_and_set()) return;

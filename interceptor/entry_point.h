@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every exported gl* function does before it forwards (the functions themselves are generated).
+// What every exported gl* function does before it forwards the call (the functions themselves are generated).
 #pragma once
 
 #include "dispatch/call_id.h"
@@ -9,10 +9,10 @@
 
 namespace understudy::interceptor {
 
-/// The way of calls on threads without a context, of calls that the driver makes, and of a thread's first call.
+/// The table for threads without a context, for calls that the driver makes, and for a thread's first call.
 const spu::DispatchTable& enter_without_context();
 
-/// Counts the call and answers with the table that it goes to.
+/// Counts the call and returns the table that it is forwarded to.
 inline const spu::DispatchTable& entered_table() {
   ThreadState& state = entry_thread.state;
   if (state.table != nullptr) [[likely]] {
@@ -22,10 +22,10 @@ inline const spu::DispatchTable& entered_table() {
   return enter_without_context();
 }
 
-/// Says once that the driver lacks what the application called.
+/// Warns once that the driver lacks a function that the application called.
 void report_missing(const char* name);
 
-/// A call that the driver lacks does nothing and returns zero.
+/// Replaces a function that the driver lacks: does nothing and returns zero.
 template <class Result>
 Result missing(spu::CallId call) {
   report_missing(spu::call_name(call));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the entry library keeps for each thread, and the two guards that say on whose behalf the thread is
-// running.
+// The entry library's state of each thread, and the two guards that record whether the thread is running driver
+// or core code.
 //
 // The level is VirtualGL's idea (faker::TempContext and its thread-local "faker level"): while it is above
-// zero, what arrives at our exported names was called by the driver or by the core, not by the application, and
-// goes to the driver uncounted.
+// zero, a call to one of our exported functions comes from the driver or the core, not from the application,
+// and goes to the driver uncounted.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace understudy::interceptor {
 
-/// Which context the thread has current as far as the core knows; `context` is 0 when none that the entry
-/// library follows.
+/// The thread's current context as the core knows it; `context` is 0 if no context that the entry library
+/// tracks is current.
 struct CurrentContext {
   std::uintptr_t context = 0;  ///< the entry library's number for it (context_ledger.h)
   WindowSystem system = WindowSystem::glx;
@@ -27,19 +27,19 @@ struct CurrentContext {
 
 /// One for each thread, initialised at compile time.
 struct EntryThread {
-  ThreadState state;                     ///< `table` set means `calls` set
-  std::uint64_t spare_calls = 0;         ///< counts where the core has given no counter
+  ThreadState state;                     ///< if `table` is set, so is `calls`
+  std::uint64_t spare_calls = 0;         ///< counter used if the core has provided none
   std::uint64_t calls_at_frame_end = 0;  ///< of OSMesa (osmesa.cc)
   int level = 0;
   CurrentContext current;
 };
 
-// Compiled with -ftls-model=initial-exec: one load relative to the thread pointer, no call, on every GL call.
-// Its few dozen bytes fit into the room that glibc keeps for libraries that are opened late.
+// Compiled with -ftls-model=initial-exec: every GL call needs one load relative to the thread pointer, no call.
+// Its few dozen bytes fit into the static TLS that glibc reserves for libraries that are opened late.
 // NOLINTNEXTLINE(bugprone-dynamic-static-initializers): constinit, which clang-tidy 14 does not see here.
 extern constinit thread_local EntryThread entry_thread __attribute__((visibility("hidden")));
 
-/// In scope while the thread is within the real driver.
+/// In scope while the thread runs code of the real driver.
 class InsideDriver {
  public:
   InsideDriver() : table_(entry_thread.state.table) {
@@ -57,7 +57,7 @@ class InsideDriver {
   const spu::DispatchTable* table_;
 };
 
-/// In scope while the thread is within the core, which may change the thread's table.
+/// In scope while the thread runs code of the core, which may change the thread's table.
 class InsideCore {
  public:
   InsideCore() { ++entry_thread.level; }

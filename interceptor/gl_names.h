@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The names under which applications ask for OpenGL, and who may have the real libraries: known to the dlopen
-// hook and to the auditor, which cannot share a library.
+// The names under which applications open OpenGL, and which libraries get the real ones. Shared by the dlopen
+// hook and the auditor, which cannot share a library.
 #pragma once
 
 #include <limits.h>
@@ -13,8 +13,8 @@ namespace understudy::interceptor {
 constexpr const char* stub_names[] = {"libGL.so.1", "libGLX.so.0", "libOpenGL.so.0", "libEGL.so.1",
                                       "libOSMesa.so.8"};
 constexpr int stub_count = 5;
-/// Where there is OpenGL there are the other four, but not everywhere is there OSMesa, and programs ask for it
-/// to find out. Its stub is given only where there is a library that it can stand for.
+/// The other four exist wherever OpenGL does. OSMesa does not, and programs probe for it, so its stub is
+/// offered only where the real library exists.
 constexpr int osmesa_stub = 4;
 
 inline const char* base_name(const char* path) {
@@ -26,8 +26,8 @@ inline bool starts_with(const char* text, const char* start) {
   return strncmp(text, start, strlen(start)) == 0;
 }
 
-/// Which stub stands for what was asked for, as a position in stub_names; -1 for none. libGL.so, libGL.so.1 and
-/// libGL.so.1.7.0 are all libGL.so.1, with or without a folder before them.
+/// Returns the position in stub_names of the stub for a requested name; -1 for none. libGL.so, libGL.so.1 and
+/// libGL.so.1.7.0 all map to libGL.so.1, with or without a folder in front.
 inline int stub_for(const char* requested) {
   const char* base = base_name(requested);
   for (int stub = 0; stub < stub_count; ++stub) {
@@ -43,9 +43,9 @@ inline int stub_for(const char* requested) {
   return -1;
 }
 
-/// Absolute paths of the stubs: written once, as the library is loaded, and only read after that.
+/// Absolute paths of the stubs: written once while the library is loaded, read-only afterwards.
 struct StubPaths {
-  char path[stub_count][PATH_MAX];  ///< empty where it would not fit
+  char path[stub_count][PATH_MAX];  ///< empty if the path is too long
 
   void set_folder(const char* folder) {
     for (int stub = 0; stub < stub_count; ++stub) {
@@ -55,9 +55,9 @@ struct StubPaths {
   }
 };
 
-/// True for the libraries that are OpenGL, or are we: what they ask for is what they get. So does everything in
-/// `driver_folder` (UNDERSTUDY_DRIVER_DIR, or null), for instance a tracer that stands between us and the
-/// driver.
+/// True if `asker` is an OpenGL library or one of ours: its requests are not redirected to a stub. The same
+/// holds for everything in `driver_folder` (UNDERSTUDY_DRIVER_DIR, or null), such as a tracer between us and
+/// the driver.
 inline bool may_have_the_real_one(const char* asker, const char* driver_folder) {
   const char* base = base_name(asker);
   constexpr const char* opengl[] = {"libunderstudy", "libGL.so",      "libGLX",     "libOpenGL.so",

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What glvnd's libGL.so.1 wants of libGLX.so.0 beside GLX itself. An application that opens the real libGL.so.1
-// by its absolute path, past the folder, gets our libGLX.so.0 as that library's dependency: it
-// must find these two. The order of the functions is glvnd's (src/GLX/libglxgl.h there); a test compares it
-// with the installed library.
+// What glvnd's libGL.so.1 requires of libGLX.so.0 besides GLX itself. An application that opens the real
+// libGL.so.1 by its absolute path, past the folder, gets our libGLX.so.0 as that library's dependency, which
+// must export these two symbols. The functions are in glvnd's order (its src/GLX/libglxgl.h); a test compares
+// them with the installed library.
 #include <GL/glx.h>
 
 #include <cstddef>
@@ -62,8 +62,8 @@ const AnyFunction __GLXGL_CORE_FUNCTIONS[] = {UNDERSTUDY_CORE_GLX(UNDERSTUDY_POI
 #undef UNDERSTUDY_POINTER
 }
 
-/// Stores the function of that name in `*cache` and answers it. glvnd's libGL passes a lock for `*cache`; a
-/// pointer is written whole without it, and every writer writes the same.
+/// Stores the function of that name in `*cache` and returns it. glvnd's libGL passes a lock for `*cache`, which
+/// is not needed: writing a pointer is atomic, and every thread writes the same value.
 UNDERSTUDY_ENTRY AnyFunction __glXGLLoadGLXFunction(const char* name, AnyFunction* cache, void* /*mutex*/) {
   using namespace understudy::interceptor;
   if (*cache == nullptr) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GLX functions that say which context is current, end a frame, hand out addresses, or make calls of
+// The GLX functions that create, destroy or switch contexts, end a frame, return addresses, or make calls of
 // OpenGL. The others are generated.
 #include <GL/glx.h>
 
@@ -27,7 +27,7 @@ GLXContext created(Display* display, GLXContext context, GLXContext share, bool 
   return context;
 }
 
-/// GLX_EXT_create_context_es2_profile: the one way to a GL ES context through GLX.
+/// False for GLX_EXT_create_context_es2_profile, the only way to create a GL ES context through GLX.
 bool asks_for_desktop_gl(const int* attributes) {
   for (; attributes != nullptr && attributes[0] != None; attributes += 2) {
     if (attributes[0] == GLX_CONTEXT_PROFILE_MASK_ARB &&
@@ -40,7 +40,7 @@ bool asks_for_desktop_gl(const int* attributes) {
 
 using VoidFunction = void (*)();
 
-/// Our entry point for a name that we export and the driver has; what the driver answers for all others.
+/// Our entry point for a name that we export and the driver has; otherwise what the driver returns.
 VoidFunction proc_address(const char* name) {
   void* real = real_proc_address(glx, name);
   if (real == nullptr || entry_thread.level > 0) return reinterpret_cast<VoidFunction>(real);
@@ -157,7 +157,7 @@ UNDERSTUDY_ENTRY void glXWaitGL() {
 
 UNDERSTUDY_ENTRY void glXUseXFont(Font font, int first, int count, int list) {
   static constinit RealFunction<void (*)(Font, int, int, int)> real{glx, "glXUseXFont"};
-  // Where nothing stands in the driver's place but the entry library, its calls are the application's.
+  // With remote OpenGL the entry library implements this itself, by GL calls through the application's table.
   const CurrentContext& current = entry_thread.current;
   const understudy::spu::DispatchTable* table = entry_thread.state.table;
   if (!is_remote()) return real(font, first, count, list);
@@ -173,8 +173,8 @@ UNDERSTUDY_ENTRY VoidFunction glXGetProcAddressARB(const GLubyte* name) {
   return proc_address(reinterpret_cast<const char*>(name));
 }
 
-// Toolkits ask these to find out whether GLX is in use at all. While its library is not open the answer is
-// known, and opening it would give a program of EGL a second window system.
+// Toolkits call these to find out whether GLX is in use. While GLX's library is not open, nothing is current,
+// and opening it would load a second window system into a program that uses EGL.
 
 UNDERSTUDY_ENTRY GLXContext glXGetCurrentContext() {
   static constinit RealFunction<GLXContext (*)()> real{glx, "glXGetCurrentContext"};

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Functions and data of libraries that are opened when first needed, by name.
+// Looks up functions and data by name in libraries that are opened when first needed.
 #pragma once
 
 #include <dlfcn.h>
 
 namespace understudy::interceptor {
 
-/// Whether the library has something of that name; null is left in `found` where it has not.
+/// Stores the address of `name` in `found`; returns false and stores null if the library has no such symbol.
 template <class Pointer>
 bool find_in_library(void* library, const char* name, Pointer& found) {
   found = reinterpret_cast<Pointer>(dlsym(library, name));

@@ -23,13 +23,13 @@ bool same_attachment(const WantedContext& wanted, const CurrentContext& current)
          wanted.draw == current.draw && wanted.read == current.read;
 }
 
-/// Only a context of the same window system is released by its make-current.
+/// Releasing (handle 0) only affects a context of the same window system.
 bool touches_current(const WantedContext& wanted, const CurrentContext& current) {
   return current.context != 0 && (wanted.handle != 0 || wanted.system == current.system);
 }
 
-/// A thread that ends lets its context go. The driver may have left the thread already: no call is made on its
-/// behalf, and what it still calls goes past the core.
+/// Releases the context of a thread that ends. The driver may already have released its state of the thread, so
+/// no call is made for it, and whatever the thread still calls bypasses the core.
 void thread_ends(void*) {
   EntryThread& thread = entry_thread;
   thread.state.table = nullptr;
@@ -43,7 +43,7 @@ void watch_end_of_thread() {
   static constinit pthread_key_t key;
   static constinit pthread_once_t once = PTHREAD_ONCE_INIT;
   pthread_once(&once, [] { pthread_key_create(&key, &thread_ends); });
-  pthread_setspecific(key, &entry_thread);  // any value but null has the key's function called
+  pthread_setspecific(key, &entry_thread);  // any value but null makes pthread call thread_ends
 }
 
 }  // namespace
@@ -70,7 +70,7 @@ void after_make_current(const WantedContext& wanted, bool succeeded) {
   EntryThread& thread = entry_thread;
   const bool same = same_attachment(wanted, thread.current);
   if (!succeeded) {
-    // The old context is still current: the core, which was told that it leaves, takes it up again.
+    // The old context is still current: the core, which was told that it is leaving, enters it again.
     const CoreServices* services = core();
     if (services != nullptr && !same && touches_current(wanted, thread.current)) {
       enter(*services, known_context(thread.current.context), thread.current);

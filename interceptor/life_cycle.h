@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What GLX, EGL and OSMesa have in common: a context becomes current, a frame ends. Tells the core, around the
-// real calls.
+// What GLX, EGL and OSMesa have in common: a context becomes current, a frame ends. Notifies the core around
+// the real calls.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace understudy::interceptor {
 
-/// True when the call came from the application and a core may want to know of it.
+/// True if the call came from the application and a core is or may still be opened.
 inline bool concerns_core() {
   return entry_thread.level == 0 && !core_is_out();
 }
 
-/// What a make-current call asks for; `handle` 0 releases the current context.
+/// The arguments of a make-current call; `handle` 0 releases the current context.
 struct WantedContext {
   WindowSystem system;
   std::uintptr_t display;
@@ -26,11 +26,11 @@ struct WantedContext {
   bool desktop_gl_if_new = true;  ///< for a context whose creation was not seen
 };
 
-/// A make-current call has succeeded: from now on the thread's calls belong to that context's OpenGL, or to
-/// none. Wanted also where there is no core.
+/// Called after a successful make-current: from now on the thread's calls go to that context's OpenGL, or to
+/// none. Needed even without a core.
 void follow_driver(const WantedContext& wanted);
 
-/// The two halves of a make-current call. `succeeded` false leaves everything as it was.
+/// Called before and after a make-current call. `succeeded` false restores the previous state.
 void before_make_current(const WantedContext& wanted);
 void after_make_current(const WantedContext& wanted, bool succeeded);
 
@@ -47,11 +47,11 @@ auto make_current(const WantedContext& wanted, RealCall real_call) {
   return result;
 }
 
-/// Tells the core that this thread's frame is about to end, or has ended. Nothing without a core and a context.
+/// Tells the core that this thread's frame is about to end, or has ended. Does nothing without core or context.
 void before_frame_end(FrameEnd kind);
 void after_frame_end(FrameEnd kind);
 
-/// A call that ends or publishes a frame: what is pending must be in the framebuffer before it.
+/// Wraps a call that ends or publishes a frame: everything pending is written to the framebuffer before it.
 template <class RealCall>
 auto end_frame(FrameEnd kind, RealCall real_call) {
   struct Ended {
@@ -63,11 +63,11 @@ auto end_frame(FrameEnd kind, RealCall real_call) {
   return real_call();
 }
 
-/// Destroys a context: what it has pending is finished first if it is this thread's.
+/// Called around the destruction of a context: if it is this thread's, pending work is finished first.
 void before_destroy(const ContextKey& key);
 void after_destroy(const ContextKey& key);
 
-/// Tells the core which contexts are gone.
+/// Tells the core which contexts have been destroyed.
 void report_gone();
 
 }  // namespace understudy::interceptor

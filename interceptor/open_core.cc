@@ -26,16 +26,16 @@ namespace {
 
 constinit std::atomic<const CoreServices*> opened = nullptr;
 constinit std::atomic<bool> out = false;
-constinit pid_t opened_by = 0;  ///< also while it is being opened
+constinit pid_t opened_by = 0;  ///< set before the core is opened
 constinit pthread_mutex_t opening = PTHREAD_MUTEX_INITIALIZER;
 
 ThreadState* state_of_this_thread() {
   return &entry_thread.state;
 }
 
-/// The core's threads stay in the parent, so the child must not enter it: even a context that it inherits is
-/// the driver's own affair from here on, and its calls must not be counted in memory that the parent shares
-/// with the launcher.
+/// The core's threads stay in the parent, so the child must not call the core. A context that it inherits is
+/// used with the driver alone, and its calls must not be counted in memory that the parent shares with the
+/// launcher.
 void leave_core_after_fork() {
   out.store(true);
   entry_thread.state.table = nullptr;
@@ -43,7 +43,7 @@ void leave_core_after_fork() {
   entry_thread.current = {};
 }
 
-/// Only the thread that forks lives on in the child: what others were in the midst of is given up.
+/// Only the forking thread exists in the child: what other threads had begun is abandoned.
 void child_after_fork() {
   opening = PTHREAD_MUTEX_INITIALIZER;
   reset_driver_locks_after_fork();

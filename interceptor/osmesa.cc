@@ -21,7 +21,7 @@ using Call = void (*)();
 constinit Call real_finish = nullptr;
 constinit Call real_flush = nullptr;
 
-/// glFlush and then glFinish end one frame, not two: something else must have been called since the last end.
+/// A glFlush followed by a glFinish ends one frame, not two: another call must have been made in between.
 void frame_ended(std::uint64_t calls_of_this_end) {
   EntryThread& thread = entry_thread;
   if (thread.level > 0 || thread.current.context == 0) return;
@@ -41,7 +41,7 @@ void flush() {
   frame_ended(1);
 }
 
-/// OSMesa has no second drawable: what tells two shapes of one array apart takes its place.
+/// OSMesa has no read drawable: this value takes its place and distinguishes two shapes of one array.
 std::uintptr_t shape(GLenum type, GLsizei width, GLsizei height) {
   return (static_cast<std::uintptr_t>(width) << 40) ^ (static_cast<std::uintptr_t>(height) << 16) ^ type;
 }
@@ -54,8 +54,8 @@ OSMesaContext created(OSMesaContext context, OSMesaContext share) {
   return context;
 }
 
-/// The application is about to get the address of a buffer: what is pending must be in it, depth included.
-/// Reading no pixel leaves everything as it is, and counts as looking at them.
+/// The application is about to get the address of a buffer: everything pending must be in it, including depth.
+/// ReadPixels of no pixels changes nothing, but counts as a read of the buffers.
 void settle_for_reading() {
   if (!concerns_core() || entry_thread.current.system != osmesa || entry_thread.current.context == 0) return;
   before_frame_end(FrameEnd::finish);
@@ -109,7 +109,7 @@ UNDERSTUDY_ENTRY GLboolean OSMesaMakeCurrent(OSMesaContext context, void* buffer
                                              GLsizei height) {
   static constinit RealFunction<GLboolean (*)(OSMesaContext, void*, GLenum, GLsizei, GLsizei)> real{
       osmesa, "OSMesaMakeCurrent"};
-  // Without a context or without an array the current context is released.
+  // A null context or a null array releases the current context.
   const bool release = context == nullptr || buffer == nullptr;
   const std::uintptr_t drawable = release ? 0 : number(buffer);
   const WantedContext wanted{osmesa, 0, release ? 0 : number(context), drawable,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The names that glvnd's libGL.so.1 exports although no registry knows them, from drivers and drafts long gone.
-// A program linked with one of them must still start, and reach the real function where a driver has it.
+// Functions that glvnd's libGL.so.1 exports although no registry lists them, from old drivers and drafts. A
+// program linked with one of them must still start, and reach the real function if a driver has it.
 //
-// Nothing tells their arguments, so each is passed on by a jump with all registers as they came. That is
-// written down for x86-64; on other processors these names are left out.
+// Their arguments are unknown, so each call is forwarded by a jump with all registers unchanged. The jump is
+// written in x86-64 assembly; other processors do without these names.
 #if defined(__x86_64__)
 
 #include <string.h>
@@ -101,14 +101,15 @@ void* real_function(const char* name) {
   return driver_is_open(WindowSystem::glx) ? nullptr : real_symbol(WindowSystem::glx, name);
 }
 
-/// What is legal between glBegin and glEnd cannot look at what is pending, which then waits for its glEnd.
+/// Between glBegin and glEnd, where these calls are legal, pending work cannot be drawn; it waits for the
+/// glEnd.
 bool describes_a_vertex(const char* name) {
   return strncmp(name, "glColor3x", 9) == 0 || strncmp(name, "glMultiTexCoord", 15) == 0;
 }
 
 }  // namespace
 
-/// Where the jump goes.
+/// Returns the target of the jump.
 AnyFunction understudy_outside_registry(const char* name) {
   void* function = real_function(name);
   if (function == nullptr) {
@@ -125,8 +126,8 @@ AnyFunction understudy_outside_registry(const char* name) {
 
 }  // namespace understudy::interceptor
 
-// The name's address travels in %r10, which no argument uses. All registers that may hold arguments are kept:
-// six of integers, the number of vector arguments (%al), and eight of vectors.
+// %r10, which no argument uses, holds the address of the name. All registers that may hold arguments are saved:
+// six integer registers, the number of vector arguments (%al), and eight vector registers.
 asm(R"(
     .text
     .type understudy_do_nothing, @function

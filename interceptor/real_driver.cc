@@ -31,7 +31,7 @@ struct DriverLibrary {
   const char* lookup;              ///< the function that looks up the others
   std::atomic<void*> handle = nullptr;
   GetProcAddress get_proc_address = nullptr;
-  bool failed = false;  ///< looked for and not found: not looked for again
+  bool failed = false;  ///< searched for and not found: not searched for again
 };
 
 constinit DriverLibrary libraries[] = {
@@ -45,11 +45,11 @@ DriverLibrary& library_of(WindowSystem system) {
   return libraries[static_cast<int>(system)];
 }
 
-/// The GL functions of a driver, looked up when they are first asked for.
+/// The GL functions of a driver, looked up when first needed.
 struct DriverFunctions {
   spu::DispatchTable table{};
   std::atomic<bool> filled = false;
-  bool complete = false;  ///< filled with a context current: some drivers have answers only then
+  bool complete = false;  ///< filled while a context was current: some drivers return addresses only then
 };
 
 constinit DriverFunctions glvnd_functions;  ///< of GLX and EGL
@@ -59,8 +59,8 @@ constinit pthread_mutex_t driver_lock = PTHREAD_RECURSIVE_MUTEX_INITIALIZER_NP;
 constinit char folder_of_this_library[PATH_MAX] = {};
 constinit StubPaths stubs{};
 
-/// Runs as the library is loaded: a relative LD_PRELOAD means something only until the program changes its
-/// folder.
+/// Runs while the library is loaded: a relative LD_PRELOAD path becomes invalid when the program changes its
+/// working directory.
 __attribute__((constructor)) void find_own_folder() {
   Dl_info info;
   if (dladdr(&libraries, &info) == 0 || info.dli_fname == nullptr) return;
@@ -79,9 +79,9 @@ class Locked {
   Locked& operator=(const Locked&) = delete;
 };
 
-/// Writes the path of NAME in FOLDER; false where there is no such file. The spelling FOLDER/./NAME keeps glibc
-/// from taking the real library for what an application means that later asks for it by its usual absolute
-/// path: such a request must still reach the auditor.
+/// Writes the path of NAME in FOLDER; false if there is no such file. The spelling FOLDER/./NAME prevents glibc
+/// from using the real library for a later request by the usual absolute path: such a request must still reach
+/// the auditor.
 bool find_in(const char* folder, const char* name, char (&path)[PATH_MAX]) {
   const int length = snprintf(path, sizeof path, "%s/./%s", folder, name);
   return length >= 0 && length < static_cast<int>(sizeof path) && access(path, R_OK) == 0;
@@ -92,19 +92,19 @@ void* open_in(const char* folder, const char* name) {
   return find_in(folder, name, path) ? real_dlopen(path, RTLD_LAZY | RTLD_LOCAL) : nullptr;
 }
 
-/// Takes the library from `folder` if it is there and is not ourselves.
+/// Opens the library from `folder` if it is there and is not one of ours.
 bool open_from(const char* folder, DriverLibrary& library) {
   char path[PATH_MAX];
   void* handle = open_in(folder, library.file);
-  // Beside a library of glvnd that is there and could not be opened, libGL is glvnd's: its functions would call
-  // ours.
+  // If the folder has glvnd's library but it could not be opened, libGL.so.1 there is glvnd's too, and its
+  // functions would call ours.
   const bool classic =
       handle == nullptr && library.file_without_glvnd != nullptr && !find_in(folder, library.file, path);
   if (classic) handle = open_in(folder, library.file_without_glvnd);
   if (handle == nullptr) return false;
 
   void* const found = dlsym(handle, library.lookup);
-  if (found == nullptr || found == own_entry(library.lookup)) return false;  // a stub of ours: look further
+  if (found == nullptr || found == own_entry(library.lookup)) return false;  // one of our stubs: search further
 
   library.get_proc_address = reinterpret_cast<GetProcAddress>(found);
   if (opengl_handle == nullptr && library.system != WindowSystem::osmesa) {
@@ -116,7 +116,7 @@ bool open_from(const char* folder, DriverLibrary& library) {
   return true;
 }
 
-/// The folder of the C library: the one folder that is certainly right for this process's architecture.
+/// The folder of the C library, which always matches the architecture of this process.
 bool libc_folder(char (&folder)[PATH_MAX]) {
   Dl_info info;
   if (dladdr(reinterpret_cast<void*>(&secure_getenv), &info) == 0 || info.dli_fname == nullptr) return false;
@@ -127,8 +127,8 @@ bool libc_folder(char (&folder)[PATH_MAX]) {
   return true;
 }
 
-/// The folders that the loader itself would look into: LD_LIBRARY_PATH and the program's RPATH first, so that a
-/// user who gave the application a driver of its own gets that one.
+/// Searches the folders of the loader's own search path: LD_LIBRARY_PATH and the program's RPATH come first, so
+/// that a driver which the user provided for the application is found.
 bool open_from_search_path(DriverLibrary& library) {
   void* program = real_dlopen(nullptr, RTLD_LAZY);
   Dl_serinfo size;
@@ -145,12 +145,12 @@ bool open_from_search_path(DriverLibrary& library) {
   return opened;
 }
 
-/// Contexts of GLX and EGL are not this machine's driver's.
+/// True if the contexts of GLX and EGL belong to a GL server instead of this machine's driver.
 bool is_elsewhere(WindowSystem system) {
   return system != WindowSystem::osmesa && is_remote();
 }
 
-/// What a thread without a driver has: every call does nothing.
+/// The table of a thread without a driver: every call does nothing.
 constinit const spu::DispatchTable no_functions{};
 
 enum class Failure { said, silent };
@@ -182,7 +182,7 @@ bool open_driver(DriverLibrary& library, Failure failure) {
   return false;
 }
 
-/// Null when the driver is not to be had; said once.
+/// Returns null if the driver cannot be opened; logs that once.
 DriverLibrary* open_library(WindowSystem system, Failure failure = Failure::said) {
   DriverLibrary& library = library_of(system);
   if (library.handle.load(std::memory_order_acquire) != nullptr) return &library;
@@ -265,7 +265,7 @@ const spu::DispatchTable& driver_table_without_context() {
   if (is_remote()) return no_functions;
   if (!driver_is_open(WindowSystem::glx) && !driver_is_open(WindowSystem::egl)) {
     if (driver_is_open(WindowSystem::osmesa)) return filled(osmesa_functions, &osmesa_function, false);
-    // GLX's library is as good a source as any: without a context every GL call does nothing.
+    // GLX's library serves as well as any: without a context every GL call does nothing.
     if (open_library(WindowSystem::glx) == nullptr) open_library(WindowSystem::egl);
   }
   return filled(glvnd_functions, &glvnd_function, false);
@@ -297,7 +297,7 @@ void claim_names() {
   if (claimed.test_and_set()) return;
   for (int stub = 0; stub < stub_count; ++stub) {
     if (stub == osmesa_stub || stubs.path[stub][0] == '\0') continue;
-    real_dlopen(stubs.path[stub], RTLD_LAZY | RTLD_LOCAL);  // a missing stub costs one name, no more
+    real_dlopen(stubs.path[stub], RTLD_LAZY | RTLD_LOCAL);  // a missing stub only leaves its own name unclaimed
   }
 }
 

@@ -14,8 +14,8 @@ namespace understudy::interceptor {
 template <class Function>
 class RealFunction;
 
-/// Calls the real function with the thread marked as inside the driver; does nothing and returns zero when the
-/// driver lacks it, saying so once.
+/// Calls the real function with the thread marked as inside the driver. If the driver lacks the function, warns
+/// once, does nothing and returns zero.
 template <class Result, class... Arguments>
 class RealFunction<Result (*)(Arguments...)> {
  public:

@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stub library: an OpenGL name and nothing else. All that it has comes from libunderstudy.so, which it needs.
+// A stub library: nothing but an OpenGL SONAME. All its functions come from its dependency, libunderstudy.so.

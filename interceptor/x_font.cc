@@ -32,7 +32,7 @@ constinit Functions x{};
 constinit bool is_open = false;
 
 void open_functions() {
-  // Xlib is open: a display is there.
+  // Xlib has already been opened, since there is a display.
   void* library = real_dlopen("libX11.so.6", RTLD_NOW | RTLD_LOCAL);
   is_open = library != nullptr && find_in_library(library, "XQueryFont", x.query_font) &&
             find_in_library(library, "XFreeFontInfo", x.free_font_info) &&
@@ -46,9 +46,9 @@ void open_functions() {
             find_in_library(library, "XGetImage", x.get_image);
 }
 
-/// Null where the font has no such character.
+/// Null if the font lacks the character.
 const XCharStruct* metrics_of(const XFontStruct& font, unsigned character) {
-  // A font of one row is indexed by 16 bits, others by two bytes of 8.
+  // A font with a single row is indexed by 16 bits, others by two bytes.
   const bool one_row = font.min_byte1 == 0 && font.max_byte1 == 0;
   const unsigned row = one_row ? 0 : character >> 8;
   const unsigned column = one_row ? character : character & 0xff;
@@ -59,18 +59,18 @@ const XCharStruct* metrics_of(const XFontStruct& font, unsigned character) {
   if (font.per_char == nullptr) return &font.min_bounds;
   const unsigned columns = font.max_char_or_byte2 - font.min_char_or_byte2 + 1;
   const XCharStruct& glyph = font.per_char[(row - font.min_byte1) * columns + column - font.min_char_or_byte2];
-  // Xlib's way to say that a character within the bounds is missing.
+  // Xlib marks a missing character within the bounds by all-zero metrics.
   const bool missing =
       glyph.width == 0 && glyph.lbearing == 0 && glyph.rbearing == 0 && glyph.ascent == 0 && glyph.descent == 0;
   return missing ? nullptr : &glyph;
 }
 
-/// An image of one bit a pixel, as large as a font's largest glyph, that the server draws into.
+/// A bitmap of one bit per pixel, as large as the font's largest glyph, that the server draws into.
 class GlyphPixmap {
  public:
   GlyphPixmap(Display* display, Font font, int width, int height)
       : display_(display), width_(width > 0 ? width : 1), height_(height > 0 ? height : 1) {
-    // Not of the current drawable, of which the server may know nothing.
+    // Not created for the current drawable, which the server may not know.
     pixmap_ = x.create_pixmap(display, DefaultRootWindow(display), static_cast<unsigned>(width_),
                               static_cast<unsigned>(height_), 1);
     XGCValues values{};
@@ -85,7 +85,7 @@ class GlyphPixmap {
   GlyphPixmap(const GlyphPixmap&) = delete;
   GlyphPixmap& operator=(const GlyphPixmap&) = delete;
 
-  /// As glBitmap reads it: rows of whole bytes from the bottom, the first pixel in the highest bit.
+  /// Writes `bits` in glBitmap's layout: rows of whole bytes from the bottom, first pixel in the highest bit.
   void draw(unsigned character, const XCharStruct& glyph, int width, int height, unsigned char* bits) const {
     const int row_bytes = (width + 7) / 8;
     memset(bits, 0, static_cast<size_t>(row_bytes) * static_cast<size_t>(height));
@@ -115,7 +115,7 @@ class GlyphPixmap {
   GC gc_;
 };
 
-/// glBitmap reads tight rows from the application's memory while this is in scope.
+/// While in scope, glBitmap reads tightly packed rows from the application's memory.
 class TightBitmaps {
  public:
   explicit TightBitmaps(const spu::DispatchTable& gl) : gl_(gl) {
@@ -156,11 +156,11 @@ void make_lists(const spu::DispatchTable& gl, Display* display, const XFontStruc
       if (const XCharStruct* glyph = metrics_of(font, character)) {
         const int columns = glyph->rbearing - glyph->lbearing;
         const int rows = glyph->ascent + glyph->descent;
-        // A font's bounds are what its file claims.
+        // The bounds come from the font file and may be wrong.
         const bool fits = columns > 0 && rows > 0 && columns <= width && rows <= height;
         if (fits) pixmap.draw(character, *glyph, columns, rows, bits);
-        // The origin is where drivers have it, a row above the one that X draws on.
-        // No null pointer: Mesa takes it for a lack of memory, although nothing is there to be read.
+        // The origin is where drivers place it, one row above the baseline of X.
+        // Not a null pointer: Mesa reports it as out of memory, although nothing would be read.
         gl.Bitmap(fits ? columns : 0, fits ? rows : 0, static_cast<GLfloat>(-glyph->lbearing),
                   static_cast<GLfloat>(glyph->descent - 1), static_cast<GLfloat>(glyph->width), 0, bits);
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glXUseXFont without a driver: display lists made of the glyphs of an X server's font.
+// glXUseXFont without a driver: display lists of the glyphs of an X server's font.
 #pragma once
 
 #include <X11/Xlib.h>
@@ -8,9 +8,9 @@
 
 namespace understudy::interceptor {
 
-/// Makes one display list of each of `count` characters from `first` on, named from `list` on, by `gl`, the
-/// table that the application's calls go through. Lists of characters that the font lacks are empty; no list is
-/// made where the server has no such font.
+/// Makes one display list for each of `count` characters from `first` on, with names from `list` on. `gl` is
+/// the table that the application's calls go through. Characters that the font lacks get empty lists; if the
+/// server has no such font, no list is made.
 void make_lists_of_font(const spu::DispatchTable& gl, Display* display, Font font, int first, int count,
                         int list);
 

@@ -21,7 +21,7 @@ constexpr std::array<Phase, phase_count> all_phases = {Phase::plain, Phase::watc
 
 constinit thread_local Chain* Chain::current_ = nullptr;
 
-/// What stands between the application and the units of the chain that is current.
+/// The shell between the application and the units of the current chain.
 struct Chain::Guard {
   static const DispatchTable& guarded() { return *current_->guarded_; }
   [[gnu::cold, gnu::noinline]] static void failed() noexcept { current_->give_up_for_exception(); }
@@ -40,7 +40,7 @@ void Chain::tell(Told told) {
     try {
       told(*place.unit);
     } catch (...) {
-      // Said when it was given up.
+      // The error was logged when the chain was given up.
     }
   }
 }
@@ -94,7 +94,7 @@ void Chain::return_to_driver() {
 
 void Chain::build(Phase phase) const {
   auto& tables = tables_[std::size_t(phase)];
-  // A table stays where it is for ever: threads and units hold its address. All are there, or none.
+  // A table never moves, because threads and units hold its address. Either all are there, or none.
   if (tables.empty()) {
     std::vector<std::unique_ptr<DispatchTable>> made(units_.size());
     for (auto& table : made) table = std::make_unique<DispatchTable>(driver_);
@@ -222,7 +222,7 @@ void Chain::give_up(const char* trouble) noexcept {
   switch_table_(&without_units());
   static constinit std::atomic_flag said{};
   if (said.test_and_set()) return;
-  // There may be no memory for a longer line.
+  // There may not be enough memory for a longer line.
   std::array<char, 512> line;
   std::snprintf(line.data(), line.size(), "%s; %s", trouble,
                 surroundings_.server != nullptr

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The chain of stream processing units that one OpenGL context's calls run through (Humphreys et al. 2002).
 //
-// A unit is a set of slots in the dispatch table. For every phase of the stream the chain builds one table a
-// unit, starting from a copy of the next unit's: a slot that a unit leaves alone *is* the next unit's pointer,
-// down to the driver's own, and costs nothing. Changing the phase is one store: the thread's entry points read
-// another table. What the application calls is a shell around the first unit's table (dispatch/shell.h): where
-// a unit throws, the whole chain is given up, and the context is the driver's alone from then on. A unit may
-// also replace single slots of its face while the chain runs (Chromium's change of interface): whoever
-// inherited the slot sees the new one at once.
+// A unit is a set of slots in the dispatch table. For every phase of the stream, the chain builds one table per
+// unit, starting from a copy of the next unit's table: a slot that a unit does not override *is* the next
+// unit's pointer, down to the driver's own, and costs nothing. Changing the phase is one store: the thread's
+// entry points then read another table. The application calls a shell around the first unit's table
+// (dispatch/shell.h): if a unit throws, the whole chain is given up, and the context's calls go directly to the
+// driver from then on. While the chain runs, a unit may also replace single slots of its table (Chromium's
+// change of interface): units that inherited the slot get the new function at once.
 #pragma once
 
 #include <cxxabi.h>
@@ -25,47 +25,46 @@
 
 namespace understudy::spu {
 
-/// What the stream is doing, as far as a unit may want other slots for it.
+/// What the stream is doing, as far as units may need other slots for it.
 enum class Phase {
-  plain,           ///< no volume texture exists: nothing is watched but texture uploads, lists and shaders
-  watching,        ///< a volume texture exists: draws are looked at
-  deferring,       ///< a run of slices is open: every call but more of the same closes it first
-  depth_deferred,  ///< watching, and the depth that slices would have written is not there: see
+  plain,           ///< no volume texture exists: only texture uploads, lists and shaders are watched
+  watching,        ///< a volume texture exists: draws are inspected
+  deferring,       ///< a run of slices is open: every call that does not continue the run closes it first
+  depth_deferred,  ///< watching, and depth that slices would have written has not been written yet: see
                    ///< volume/depth/deferred_depth_write.h
   compiling,       ///< between glNewList and glEndList: calls are recorded by the driver, not executed
 };
 constexpr int phase_count = 5;
 
-/// `finish` ends a frame where there is no swap: the buffers keep their contents.
+/// `finish` ends a frame if there is no swap: the buffers keep their contents.
 enum class FrameEnd { swap, finish, wait, make_current, destroy };
 
 class Chain;
 
-/// One element of a chain. It may change, replace, discard or add calls; whatever it leaves alone costs
-/// nothing. Functions are called on the thread that has the context current, but process_ends().
+/// One element of a chain. It may change, replace, discard or add calls; slots that it does not override cost
+/// nothing. All functions except process_ends() are called on the thread that has the context current.
 class Unit {
  public:
   virtual ~Unit() = default;
-  /// Tells units apart without run-time type information on the way of every call: the address of the type's
-  /// `tag`.
+  /// Identifies the unit's type without run-time type information in the path of every call: the address of the
+  /// type's `tag`.
   virtual const char* tag_address() const = 0;
-  /// Overrides slots of `table`, which holds the next unit's slots of the same phase. Slots that are null
-  /// there, commands that the driver lacks, stay null whatever is put into them.
+  /// Overrides slots of `table`, which holds the next unit's slots of the same phase. Slots that are null there
+  /// (commands that the driver lacks) stay null whatever is stored in them.
   virtual void fill(Phase phase, DispatchTable& table) = 0;
-  /// Whatever was held back must be in the framebuffer when this returns. The context is current.
+  /// On return, everything that was held back is in the framebuffer. The context is current.
   virtual void settle() {}
-  /// The chain's context has become current on the calling thread, or stops being it.
+  /// The chain's context has become current on the calling thread, or is about to be released.
   virtual void made_current() {}
   virtual void left() {}
   /// A frame ends (after the real swap when `kind` is swap).
   virtual void frame_ended(FrameEnd) {}
-  /// The context goes away; it may not be current, so no GL call is allowed.
+  /// The context is being destroyed; it may not be current, so no GL call is allowed.
   virtual void abandon() {}
-  /// The chain is given up: what was held back must be in the framebuffer when this returns, drawn by the next
-  /// unit's own functions. Afterwards the unit is told no more than left() and abandon(). The context is
-  /// current.
+  /// The chain is given up: on return, everything that was held back is in the framebuffer, drawn with the next
+  /// unit's functions. Afterwards only left() and abandon() of the unit are called. The context is current.
   virtual void give_up() {}
-  /// The process may end without another word: figures that belong into a file are written. Called by any
+  /// The process may end without further notice: writes figures that belong in a file. May be called on any
   /// thread.
   virtual void process_ends() {}
 
@@ -74,30 +73,30 @@ class Unit {
   std::size_t place_ = 0;  ///< in its chain
 };
 
-/// All context shared state lives in the share group; see track/share_group.h.
+/// State that contexts share is kept in the share group; see track/share_group.h.
 class ShareGroup;
 
 class ServerConnection;
 
-/// What a context is among the contexts of the process.
+/// Identifies a context among the contexts of the process.
 struct Surroundings {
   std::uint64_t context = 0;           ///< its number
-  std::uint64_t shares_with = 0;       ///< number of one that it shares objects with; 0: none
-  ServerConnection* server = nullptr;  ///< where its calls are made; null: here
+  std::uint64_t shares_with = 0;       ///< number of a context that it shares objects with; 0: none
+  ServerConnection* server = nullptr;  ///< the server that makes its calls; null: none
 };
 
-/// The units of one context, from the application to the driver. One thread at a time has it current; tables
-/// are built when a phase is first entered, and stay where they are.
+/// The units of one context, from the application to the driver. Current on one thread at a time. Tables are
+/// built when a phase is first entered, and never move.
 class Chain {
  public:
-  /// `switch_table` installs a table as the calling thread's; the entry library provides it.
+  /// `switch_table` installs a table for the calling thread; the entry library provides it.
   Chain(const DispatchTable& driver, std::shared_ptr<ShareGroup> group,
         void (*switch_table)(const DispatchTable*), Surroundings surroundings = {});
   ~Chain();
   Chain(const Chain&) = delete;
   Chain& operator=(const Chain&) = delete;
 
-  /// Appends a unit; the last one stands above the driver.
+  /// Appends a unit; the last one is directly above the driver.
   template <class T, class... Arguments>
   T& add(Arguments&&... arguments) {
     auto unit = std::make_unique<T>(*this, std::forward<Arguments>(arguments)...);
@@ -106,33 +105,33 @@ class Chain {
     return reference;
   }
   void add(std::unique_ptr<Unit> unit);
-  /// Takes all units away, the last one first, so that calls go straight to the driver. Not while the chain is
+  /// Removes all units, last one first, so that calls go directly to the driver. Not allowed while the chain is
   /// current on any thread.
   void remove_units();
 
   /// The chain whose context is current on this thread; null when none is.
   static Chain* current() { return current_; }
-  /// Its context is current on this thread now: units are told, and the table of the present phase is
-  /// installed.
+  /// The chain's context is current on this thread now: notifies the units and installs the table of the
+  /// present phase.
   void make_current();
   static void release_current();
 
-  /// One store: the thread's entry points read the table of that phase from now on.
+  /// Switches the phase with one store: the thread's entry points then read the table of that phase.
   void set_phase(Phase phase);
   Phase phase() const { return phase_; }
-  /// The table above which `unit` stands, in the current phase and in a given one.
+  /// The table that `unit` calls, in the current phase or in the given one.
   const DispatchTable& below(const Unit& unit) const { return below(unit, phase_); }
   const DispatchTable& below(const Unit& unit, Phase phase) const {
     if (!built(phase)) build(phase);
     return below(unit.place_, phase);
   }
-  /// Something went wrong that nobody can mend, for want of memory perhaps: units draw what they hold back, and
-  /// from now on calls go straight to the driver. Said once in a process. The context is current on the calling
-  /// thread. `trouble` says what went wrong.
+  /// Gives up the chain after an error that cannot be repaired, such as a lack of memory: units draw what they
+  /// hold back, and from now on calls go directly to the driver. Logs `trouble`, the error, once per process.
+  /// The context is current on the calling thread.
   void give_up(const char* trouble) noexcept;
   bool given_up() const { return given_up_; }
-  /// What a unit does after the call it was asked for is made: where it fails, the chain is given up and the
-  /// call is not made again.
+  /// Runs what a unit does after it has made the requested call: if that throws, the chain is given up, and the
+  /// call is not repeated.
   template <class Work>
   void after_call(Work work) {
     try {
@@ -143,35 +142,35 @@ class Chain {
       give_up_for_exception();
     }
   }
-  /// give_up() with what the exception that is being handled says.
+  /// give_up() with the message of the exception that is being handled.
   void give_up_for_exception() noexcept;
 
-  /// The table that calls to `unit` come through.
+  /// The table through which `unit` is called.
   const DispatchTable& face(const Unit& unit, Phase phase) const;
   /// The first unit's table.
   const DispatchTable& head(Phase phase) const;
-  /// What the application calls: head(), out of which nothing thrown gets. A slot that is the driver's own is
-  /// the driver's own here too.
+  /// What the application calls: head() in a shell that lets no exception out. Slots that are the driver's own
+  /// are the driver's own here too.
   const DispatchTable& guarded_head(Phase phase) const;
   const DispatchTable& driver() const { return driver_; }
   ShareGroup& group() { return *group_; }
   const Surroundings& surroundings() const { return surroundings_; }
 
-  /// Puts `function` into one slot of the face of `unit`, in all phases. Units above it that inherited the slot
-  /// inherit the new one, those that override it do not notice.
+  /// Stores `function` in one slot of the face of `unit`, in all phases. Units above it that inherited the slot
+  /// inherit the new function; those that override it are not affected.
   void replace_slot(const Unit& unit, CallId call, AnyFunction function);
   template <class Function>
   void replace_slot(const Unit& unit, Function DispatchTable::*member,
                     std::type_identity_t<Function> function) {
     replace_slot(unit, call_of(member), reinterpret_cast<AnyFunction>(function));
   }
-  /// Takes that back: the slot is again what fill() makes of it.
+  /// Undoes replace_slot(): the slot is again what fill() makes of it.
   void restore_slot(const Unit& unit, CallId call);
-  /// Asks every unit to fill its slots anew, for units whose wishes have changed. The tables stay where they
-  /// are.
+  /// Lets every unit fill its slots again, for units whose slots depend on a changed setting. The tables do not
+  /// move.
   void refill();
 
-  /// The following four are handed to every unit, the one nearest to the application first; see Unit.
+  /// The following four are forwarded to every unit, the one nearest to the application first; see Unit.
   void settle();
   void frame_ended(FrameEnd kind);
   void abandon();
@@ -191,23 +190,23 @@ class Chain {
 
  private:
   struct Guard;
-  /// Tells every unit; of a chain that was given up, whatever units have to say to that is dropped.
+  /// Calls `told` for every unit. If the chain was given up, exceptions of the units are dropped.
   template <class Told>
   void tell(Told told);
   struct Place {
-    const char* tag;  ///< the unit's own; kept here because units are looked up on every call
+    const char* tag;  ///< the unit's tag; kept here because units are looked up on every call
     std::unique_ptr<Unit> unit;
   };
-  /// What a slot was before it was replaced.
+  /// A slot's value before it was replaced.
   struct Original {
     bool inherited;
-    AnyFunction own;  ///< where it was not inherited
+    AnyFunction own;  ///< its value if it was not inherited
   };
   struct Replacement {
     std::size_t place;
     CallId call;
     AnyFunction function;
-    std::array<Original, phase_count> originals;  ///< of the phases that are built
+    std::array<Original, phase_count> originals;  ///< of the phases whose tables are built
   };
 
   template <class Function>
@@ -216,10 +215,10 @@ class Chain {
     return CallId((slot - reinterpret_cast<const char*>(&driver_)) / std::ptrdiff_t{sizeof(AnyFunction)});
   }
 
-  /// Makes every table the driver's. Units that go delete what they made in OpenGL, and the functions of the
-  /// units below them would look for a chain that is current, or for a unit that has gone.
+  /// Makes every table the driver's. Units that are destroyed delete their OpenGL objects, and the functions of
+  /// the units below them would look for a current chain or for a unit that no longer exists.
   void return_to_driver();
-  /// Where calls go when the chain is given up.
+  /// The table for calls after the chain was given up.
   const DispatchTable& without_units() const;
   void build_guarded(Phase phase) const;
   void guard_slot(Phase phase, CallId call) const;
@@ -231,11 +230,11 @@ class Chain {
   }
   std::vector<Replacement>::iterator find_replacement(const Unit& unit, CallId call);
   void note_original(Replacement& replacement, Phase phase) const;
-  /// Of the unit at `place`, and of the units above it that inherit the slot from there.
+  /// Sets the slot of the unit at `place`, and of the units above it that inherit the slot from there.
   void set_inherited(std::size_t place, Phase phase, CallId call, AnyFunction function);
 
-  /// Read by every call that a unit looks at. The core, opened late, has but few bytes of these, and asking for
-  /// their address by function costs 5 ns a call.
+  /// Read by every call that a unit handles. The core is opened late, so only a few bytes of static TLS are
+  /// left for it; getting the address by a function call instead costs 5 ns per call.
   [[gnu::tls_model("initial-exec")]] static constinit thread_local Chain* current_;
 
   const DispatchTable& driver_;
@@ -245,7 +244,7 @@ class Chain {
   std::vector<Place> units_;
   mutable std::vector<Replacement> replacements_;
   Phase phase_ = Phase::plain;
-  const DispatchTable* guarded_ = nullptr;  ///< head(phase_) while units are asked
+  const DispatchTable* guarded_ = nullptr;  ///< head(phase_), which the shells call
   bool given_up_ = false;
   /// tables_[phase][u] is unit u's face; built when the phase is first entered.
   mutable std::array<std::vector<std::unique_ptr<DispatchTable>>, phase_count> tables_;

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* form = R"({"chain": ["track", {"unit": "perf", "file": "calls.json"}, "driver"]})";
 
-/// The value as it would stand in the text form.
+/// The value as it would be written in the text form.
 std::string option_value(const Json& value, const std::string& where) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "on" : "off";
@@ -78,7 +78,7 @@ ChainSettings read_chain_file(const std::string& path) {
   if (std::filesystem::is_directory(path, unreadable)) throw ChainError(path, "is a folder, not a chain file");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw ChainError(path, fmt::format("cannot read this chain file: {}", std::strerror(errno)));
-  // One byte more than is allowed tells a file that is too long.
+  // One byte above the limit shows that a file is too long.
   std::string text(max_chain_bytes + 1, '\0');
   file.read(text.data(), std::streamsize(text.size()));
   text.resize(std::size_t(file.gcount()));

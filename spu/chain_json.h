@@ -9,10 +9,10 @@
 
 namespace understudy::spu {
 
-/// `name` stands for the text in messages. Throws ChainError.
+/// `name` identifies the text in messages. Throws ChainError.
 ChainSettings parse_chain_json(std::string_view json, const std::string& name);
 
-/// Throws ChainError, also when there is no such file or it cannot be a chain.
+/// Throws ChainError, also if the file does not exist or is not a chain.
 ChainSettings read_chain_file(const std::string& path);
 
 }  // namespace understudy::spu

@@ -16,10 +16,10 @@ struct Renamed {
 
 struct RenamedOption {
   Renamed flag;
-  const char* former_variable;  ///< null: it had none of its own
+  const char* former_variable;  ///< null: no former variable
   const char* variable;
   std::array<Renamed, 3> values;   ///< of the former option or variable
-  std::string_view commands = {};  ///< between spaces, where the former name is one of few subcommands'
+  std::string_view commands = {};  ///< separated by spaces, if only these subcommands had the former name
 };
 
 constexpr std::array renamed_options{
@@ -52,7 +52,7 @@ std::string present_name(const std::array<Renamed, count>& names, std::string na
   return found == names.end() || name.empty() ? name : std::string(found->present);
 }
 
-/// Of a list with commas, every entry.
+/// Replaces every entry of a comma-separated list.
 std::string present_value(const RenamedOption& option, std::string_view list) {
   std::string present;
   for (;;) {
@@ -77,7 +77,7 @@ const RenamedOption* option_with_flag(std::string_view flag, const std::string& 
 std::vector<std::string> with_present_options(const std::vector<std::string>& arguments) {
   std::vector<std::string> present;
   const std::string command = arguments.size() > 1 ? arguments[1] : "";
-  const RenamedOption* before = nullptr;  // whose value the next argument is
+  const RenamedOption* before = nullptr;  // the option whose value is the next argument
   for (const std::string& argument : arguments) {
     const std::size_t equals = argument.find('=');
     const RenamedOption* option = option_with_flag(argument.substr(0, equals), command);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names that options, their values, environment variables and units had before they took the field's words.
-// They are accepted for one release, and stand here alone.
+// Former names of options, their values, environment variables and units, before they took the field's terms.
+// They are accepted for one release, and are listed only here.
 #pragma once
 
 #include <optional>
@@ -10,22 +10,22 @@
 
 namespace understudy::spu {
 
-/// Of the folder that UNDERSTUDY_ENTRY_DIR names; for libraries that can link nothing.
+/// Former name of the variable UNDERSTUDY_ENTRY_DIR, for libraries that cannot link anything.
 inline constexpr const char* former_entry_folder_variable = "UNDERSTUDY_DOOR_DIR";
 
-/// The launcher's arguments (program, subcommand, options) with every former option and value in today's words.
-/// What is not known here stays as it is.
+/// Returns the launcher's arguments (program, subcommand, options) with all former options and values replaced
+/// by the present ones. Other arguments are unchanged.
 std::vector<std::string> with_present_options(const std::vector<std::string>& arguments);
 
-/// What the environment says of `variable`: its own value, or where it is not set that of its former name, in
-/// today's words. Nothing when neither is set.
+/// Returns the value of `variable`, or if it is not set, the value of the variable of its former name, with
+/// former words replaced. Nothing if neither is set.
 std::optional<std::string> environment_value(const char* variable);
 
-/// Puts the values of former variables where today's are looked for. For programs of our own, before they have
-/// threads.
+/// Sets the present variables from variables with former names, and unsets those. For our own programs, before
+/// they start threads.
 void rename_former_variables();
 
-/// Today's names of a unit of a chain, and of one of its options.
+/// The present names of a unit of a chain and of one of its options; other names are unchanged.
 std::string present_unit(std::string name);
 std::string present_unit_option(std::string name);
 

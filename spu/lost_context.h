@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenGL of a context that is lost, where no driver is below that could go on with it.
+// OpenGL functions of a lost context, used if there is no driver below that could replace it.
 #pragma once
 
 #include "dispatch/table.h"
 
 namespace understudy::spu {
 
-/// Functions that do nothing and answer zero. The first glGetError of each thread answers GL_OUT_OF_MEMORY.
-/// Never throws, and needs no memory.
+/// Functions that do nothing and return zero. The first glGetError of each thread returns GL_OUT_OF_MEMORY, and
+/// graphics reset queries return GL_UNKNOWN_CONTEXT_RESET. Never throws, and allocates no memory.
 const DispatchTable& lost_context() noexcept;
 
 }  // namespace understudy::spu

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all contexts of a process that write into one file share, since a process has one such file.
+// What all contexts of a process share that write into the same file.
 #pragma once
 
 #include <map>
@@ -9,8 +9,8 @@
 
 namespace understudy::spu {
 
-/// The T of this file, made as T(file) when it is first asked for. It lives as long as the process: an
-/// application may make contexts one after another, and may call OpenGL until its very last instruction.
+/// The T of this file, created as T(file) on first use. Never destroyed: an application may create contexts one
+/// after another, and may call OpenGL until its very last instruction.
 template <class T>
 T& shared_by_file(const std::string& file) {
   struct Known {

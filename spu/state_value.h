@@ -5,7 +5,7 @@
 
 namespace understudy::spu {
 
-/// What glGetIntegerv says of a state that is one number; 0 where OpenGL does not know it.
+/// Returns glGetIntegerv's value of a scalar state; 0 if OpenGL does not know the state.
 inline GLint state_value(const DispatchTable& gl, GLenum name) {
   GLint value = 0;
   gl.GetIntegerv(name, &value);

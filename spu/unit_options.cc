@@ -66,7 +66,7 @@ std::optional<OptionValues::Value> read_value(const UnitOption& option, const st
   return {};
 }
 
-/// Insertions, deletions and replacements that make `b` of `a` (Levenshtein).
+/// The number of insertions, deletions and replacements that turn `a` into `b` (Levenshtein).
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

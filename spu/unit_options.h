@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options a unit says it has, and the values a chain gives them.
+// The options that a unit declares, and the values that a chain gives them.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@
 
 namespace understudy::spu {
 
-/// What text an option takes.
+/// The kind of text that an option accepts.
 enum class OptionType {
-  on_off,   ///< on, yes, true, 1; off, no, false, 0; the name alone is "on"
+  on_off,   ///< on, yes, true, 1; off, no, false, 0; the name alone means "on"
   integer,  ///< within low and high
   number,   ///< within low and high
   text,
@@ -39,11 +39,11 @@ struct UnitOption {
 /// Whole numbers from `first` to `last`.
 struct IntegerRange {
   std::int64_t first = 0;
-  std::int64_t last = 0;  ///< belongs to the range
+  std::int64_t last = 0;  ///< inclusive
   bool operator==(const IntegerRange&) const = default;
 };
 
-/// Every option of a unit with its value: what the chain says, or the default.
+/// Every option of a unit with its value from the chain, or the default.
 class OptionValues {
  public:
   using Value = std::variant<bool, std::int64_t, double, std::string, IntegerRange>;
@@ -51,7 +51,7 @@ class OptionValues {
   bool is_on(std::string_view name) const { return std::get<bool>(value(name)); }
   std::int64_t integer(std::string_view name) const { return std::get<std::int64_t>(value(name)); }
   double number(std::string_view name) const { return std::get<double>(value(name)); }
-  /// Of a text, a file or a choice.
+  /// The value of a text, a file or a choice.
   const std::string& text(std::string_view name) const { return std::get<std::string>(value(name)); }
   IntegerRange range(std::string_view name) const { return std::get<IntegerRange>(value(name)); }
 
@@ -63,16 +63,16 @@ class OptionValues {
   std::map<std::string, Value, std::less<>> values_;
 };
 
-/// Whether the option takes `text`.
+/// Whether the option accepts `text`.
 bool is_value_of(const UnitOption& option, const std::string& text);
 
-/// Reads what `unit` says about its options against those there are. Throws ChainError.
+/// Checks the settings of `unit` against its declared `options` and returns all values. Throws ChainError.
 OptionValues option_values(const UnitSetting& unit, std::span<const UnitOption> options);
 
 /// "a whole number from 1 to 9", "one of json, text".
 std::string type_text(const UnitOption& option);
 
-/// The name among `names` that `wrong` was meant to be; empty when none is near.
+/// Returns the name in `names` that is closest to the misspelt `wrong`; empty if none is close.
 std::string nearest_name(std::string_view wrong, const std::vector<std::string>& names);
 
 }  // namespace understudy::spu

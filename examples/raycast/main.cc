@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Casts rays through a volume of bytes and writes what they show: raycast [FILE] >image.ppm
+// Casts rays through a volume of 8-bit texels and writes the image as PPM: raycast [FILE] >image.ppm
 #include <algorithm>
 #include <cstdio>
 #include <vector>

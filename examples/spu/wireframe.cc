@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A unit that draws the edges of polygons alone.
+// A unit that draws only the edges of polygons.
 #include <spu/plugin/unit_plugin.h>
 
 namespace {

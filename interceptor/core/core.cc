@@ -34,7 +34,7 @@
 namespace understudy::interceptor {
 namespace {
 
-/// The entry library's own window system, where a GL server makes the calls.
+/// The entry library as the local window system, used when a GL server makes the calls.
 class EntryFrontEnd final : public spu::FrontEnd {
  public:
   explicit EntryFrontEnd(const EntryServices& entry) : entry_(entry) {}
@@ -80,7 +80,7 @@ class Core {
 
   const EntryServices& entry() const { return entry_; }
 
-  /// Where there is none, its calls do nothing.
+  /// Sends the thread's calls to the driver; with a GL server, they do nothing from now on.
   void leave_to_driver() noexcept {
     ThreadState& thread = *entry_.thread_state();
     thread.table = server_ ? &spu::lost_context() : thread.driver;
@@ -95,7 +95,7 @@ class Core {
                        std::uintptr_t drawable) {
     ThreadState& thread = *entry_.thread_state();
     thread.calls = spu::thread_call_counter();
-    // OSMesa draws into memory of this process, which no GL server could reach.
+    // OSMesa draws into memory of this process, which a GL server cannot reach.
     if (!desktop_gl || (server_ && system == WindowSystem::osmesa)) {
       thread.table = thread.driver;
       return;
@@ -104,7 +104,7 @@ class Core {
     member.window = system == WindowSystem::glx ? drawable : 0;
     spu::Chain& chain = member.chain;
     chain.make_current();
-    // Contexts that share objects with it may have brought volumes since its last frame.
+    // Contexts that share objects with this one may have uploaded volumes since its last frame.
     chain.frame_ended(spu::FrameEnd::make_current);
   }
 
@@ -117,7 +117,7 @@ class Core {
       gone = std::move(found->second);
       contexts_.erase(found);
     }
-    // Null where there was no memory to make it.
+    // Null if there was not enough memory to create it.
     if (gone) gone->chain.abandon();
   }
 
@@ -129,11 +129,11 @@ class Core {
     if (reports_itself()) spu::write_report_when_due(options_.report);
   }
 
-  /// Another thread may be in a context's chain, or holds the lock for ever: then its figures stay as last
+  /// Another thread may be inside a context's chain, or hold the lock forever: the figures then stay as last
   /// written.
   void process_ends() {
     if (reports_itself()) spu::write_report_now(options_.report);
-    // A child after fork() has its parent's contexts in memory, and its parent's files are not its own.
+    // A forked child has its parent's contexts in memory, but must not write its parent's files.
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock || getpid() != process_) return;
     for (const auto& [context, member] : contexts_) {
@@ -143,12 +143,12 @@ class Core {
 
   void program_ends() {
     session_->end();
-    // The parent's connection is none of a forked child's to shut.
+    // A forked child must not close its parent's connection.
     if (server_ && getpid() == process_) server_->end();
   }
 
-  /// Without a launcher nobody else writes the report. A child after fork has none of its own, and its parent's
-  /// is not its to write.
+  /// True if this process has to write the report: there is no launcher that does, and it is not a forked
+  /// child, which has no report of its own and must not write its parent's.
   bool reports_itself() const {
     return !options_.report.empty() && options_.run_dir.empty() && getpid() == process_;
   }
@@ -157,14 +157,14 @@ class Core {
   struct Member {
     std::shared_ptr<spu::ShareGroup> group;
     spu::Chain chain;
-    std::atomic<std::uintptr_t> window = 0;  ///< that it draws into: an X window's number, or 0
+    std::atomic<std::uintptr_t> window = 0;  ///< the X window that it draws into, or 0
   };
 
   Member& member_of(std::uintptr_t context, std::uintptr_t share, const spu::DispatchTable& driver) {
     const std::scoped_lock lock(mutex_);
     const auto found = contexts_.find(context);
     if (found != contexts_.end()) {
-      // What the context did meanwhile is not known.
+      // What the context has done in the meantime is unknown.
       if (!found->second)
         throw std::runtime_error("an OpenGL context could not be followed from its beginning");
       return *found->second;
@@ -205,29 +205,29 @@ class Core {
   std::shared_ptr<spu::RenderSession> session_;
   std::mutex mutex_;
   std::map<std::uintptr_t, std::unique_ptr<Member>> contexts_;
-  std::optional<RedrawRequest> redraw_;  ///< where images may be behind
+  std::optional<RedrawRequest> redraw_;  ///< set if images may be a frame late
 };
 
-/// The per-process core. Never destroyed: the application may call OpenGL until its very last instruction.
+/// The core of this process. Never destroyed: the application may call OpenGL until its very last instruction.
 constinit Core* core = nullptr;
 
 void Core::install(const spu::DispatchTable* table) {
   core->entry_.thread_state()->table = table;
 }
 
-/// The thread's context is the driver's alone from now on.
+/// From now on the thread's calls go directly to the driver.
 void leave_to_driver(const char* trouble) noexcept {
   if (spu::Chain* chain = spu::Chain::current()) return chain->give_up(trouble);
   if (core != nullptr) core->leave_to_driver();
   static constinit std::atomic_flag said{};
   if (said.test_and_set()) return;
-  // There may be no memory for a longer line.
+  // There may not be enough memory for a longer line.
   std::array<char, 512> line;
   std::snprintf(line.data(), line.size(), "%s; calls go straight to the driver", trouble);
   logging::write(logging::Level::error, line.data());
 }
 
-/// Nothing thrown may cross into the application, but the end of a thread that is cancelled.
+/// Lets no exception reach the application, except the unwinding of a cancelled thread.
 template <class Action>
 void guarded(Action action) {
   try {
@@ -291,12 +291,12 @@ void after_frame_end(FrameEnd kind) {
 
 constinit CoreServices services;
 
-/// Runs before the libraries that the core needs take themselves apart; the application may draw on after that.
+/// Runs before the libraries that the core needs are torn down; the application may keep drawing after that.
 void at_program_end() {
   if (core != nullptr) core->program_ends();
 }
 
-/// A courtesy: a program that ends in order leaves its last half second in the report and in units' files too.
+/// If a program exits regularly, writes its last half second to the report and the units' files as well.
 [[gnu::destructor]] void at_library_end() {
   if (core != nullptr) guarded([] { core->process_ends(); });
 }

@@ -12,7 +12,7 @@
 namespace understudy::interceptor {
 namespace {
 
-/// Longer than a frame takes while somebody turns the camera.
+/// Longer than the time of a frame while somebody turns the camera.
 constexpr std::chrono::milliseconds pause_before_asking{60};
 
 template <class Function>
@@ -22,8 +22,8 @@ Function* function(void* library, const char* name) {
 
 }  // namespace
 
-/// A connection of our own, so that none of the program's own threads is in its way. Its library is the one
-/// that the program's Xlib has opened already.
+/// A connection of our own, so that the program's threads cannot block it. Uses the libxcb that the program's
+/// Xlib has already opened.
 class RedrawRequest::Display {
  public:
   static std::unique_ptr<Display> open() {
@@ -50,14 +50,14 @@ class RedrawRequest::Display {
     return there;
   }
 
-  /// False when the window is gone.
+  /// False if the window no longer exists.
   bool expose(std::uintptr_t window) {
     xcb_generic_error_t* error = nullptr;
     xcb_get_geometry_reply_t* const geometry =
         geometry_reply_(connection_, geometry_(connection_, xcb_drawable_t(window)), &error);
     std::free(error);
     if (geometry == nullptr) return false;
-    // As long as any event.
+    // xcb_send_event always reads 32 bytes, the size of any event.
     union {
       xcb_expose_event_t event;
       char bytes[32];
@@ -67,7 +67,7 @@ class RedrawRequest::Display {
     message.event.width = geometry->width;
     message.event.height = geometry->height;
     std::free(geometry);
-    // To whoever looks after the window's exposure: it, or one of its parents.
+    // With propagation: goes to whoever selected Expose on the window or on one of its parents.
     send_event_(connection_, 1, xcb_window_t(window), XCB_EVENT_MASK_EXPOSURE, message.bytes);
     flush_(connection_);
     return true;
@@ -123,13 +123,13 @@ void RedrawRequest::frame_shown(std::uintptr_t window, bool behind) {
   if (due_ && due_->window == window) due_.reset();
   if (!behind) return;
   due_ = {window, std::chrono::steady_clock::now() + pause_before_asking};
-  // It sleeps for as long as the program lives: nothing that ends with the program is touched by it.
+  // The thread sleeps until the program exits, and touches nothing that is torn down at exit.
   if (!has_thread_) {
     std::thread([this] {
       try {
         ask_when_due();
       } catch (const std::exception&) {
-        // Nobody is asked any more: an image that is behind stays so until the program draws.
+        // No more requests: an image that is behind stays so until the program draws.
       }
     }).detach();
     has_thread_ = true;
@@ -147,7 +147,7 @@ void RedrawRequest::ask_when_due() {
     } else if (!display_->expose(due_->window)) {
       due_.reset();
     } else {
-      // Some programs are busy, or throw away what comes while they are: it is asked until it draws.
+      // Busy programs may discard events, so the request is repeated until the program draws.
       due_->at = std::chrono::steady_clock::now() + 16 * pause_before_asking;
       asked_();
     }

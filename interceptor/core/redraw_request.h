@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Asks a window to draw itself again: what X sends a window that has been uncovered (Expose), after which its
-// program must draw it. For windows whose latest image is one frame late (spu/volume/session/frame_latency.h),
-// if no other frame follows by itself.
+// Asks a window to redraw itself, with the event that X sends to a window which has been uncovered (Expose);
+// the program must then draw it. Used for windows whose latest image is one frame late
+// (spu/volume/session/frame_latency.h), if no other frame follows by itself.
 #pragma once
 
 #include <chrono>
@@ -16,16 +16,16 @@ namespace understudy::interceptor {
 
 class RedrawRequest {
  public:
-  /// `asked` is called, on another thread, whenever a window has been asked.
+  /// `asked` is called, on another thread, each time a window has been asked.
   explicit RedrawRequest(std::function<void()> asked);
   ~RedrawRequest();
   RedrawRequest(const RedrawRequest&) = delete;
   RedrawRequest& operator=(const RedrawRequest&) = delete;
 
-  /// Whether there is such a window on the display that DISPLAY names, and the program speaks X itself.
+  /// Whether the window exists on the display named by DISPLAY, and the program itself uses X.
   bool can_ask(std::uintptr_t window);
-  /// The window shows another frame: an older wish is void. Where it is `behind`, the window is asked as soon
-  /// as no other frame has come for a while.
+  /// The window shows another frame, which cancels an earlier request. If the frame is `behind`, the window is
+  /// asked to redraw once no other frame has come for a while.
   void frame_shown(std::uintptr_t window, bool behind);
 
  private:

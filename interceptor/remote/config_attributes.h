@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What GLX and EGL ask of a configuration, as tables: GLX 1.4, table 3.4; EGL 1.5, table 3.4.
+// The attributes of configurations in GLX and EGL, as tables: GLX 1.4, table 3.4; EGL 1.5, table 3.4.
 #pragma once
 
 #include <span>
@@ -8,12 +8,12 @@
 
 namespace understudy::interceptor {
 
-/// When a configuration has what an application wants of one attribute.
+/// How a configuration's value of an attribute is compared with the requested one.
 enum class Match {
   at_least,    ///< sizes, in bits or pixels
   exact,       ///< flags and kinds
   all_bits,    ///< masks
-  disregarded  ///< says nothing of a configuration, or is for asking only
+  disregarded  ///< no criterion for a configuration, or only for queries
 };
 
 struct ConfigAttribute {
@@ -22,15 +22,15 @@ struct ConfigAttribute {
   int (*value)(const RemoteConfig&);
 };
 
-/// Returns false where the table has no such attribute, and leaves `value` alone.
+/// Returns false and leaves `value` alone if the table has no such attribute.
 bool attribute_of(std::span<const ConfigAttribute> table, const RemoteConfig& config, int name, int* value);
 
-/// Names and values in turn, up to `end`. `any` as a value asks for nothing, as does a name that the table
-/// lacks. A null list asks for nothing at all.
+/// Whether the configuration meets a list of alternating names and values that `end` terminates. A value of
+/// `any` and a name that the table lacks are ignored. A null list is met by every configuration.
 bool meets_all(std::span<const ConfigAttribute> table, const RemoteConfig& config, const int* list, int end,
                int any);
 
-/// The attributes that both interfaces have under the same meaning.
+/// The values of attributes that have the same meaning in both interfaces.
 namespace config_value {
 
 constexpr int zero(const RemoteConfig&) {

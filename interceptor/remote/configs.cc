@@ -11,7 +11,7 @@
 namespace understudy::interceptor {
 namespace {
 
-constexpr int most_configs = 24;  ///< visuals of 24 bits with and without alpha, of 32 bits with, 8 kinds each
+constexpr int most_configs = 24;  ///< 8 for each of: 24 bits without and with alpha, 32 bits with alpha
 
 struct Screen {
   Display* display;
@@ -62,7 +62,7 @@ void fill(Screen& screen) {
       if (visuals[i].depth != depth || !takes_images(visuals[i])) continue;
       if (best == nullptr || visuals[i].visualid == usual) best = &visuals[i];
     }
-    // Toolkits that do not ask for alpha would take it for a window to look through.
+    // Toolkits that do not request alpha would take a 32-bit visual for a translucent window.
     if (best != nullptr && depth == 24) add_visual(screen, best->visualid, depth, 0);
     if (best != nullptr) add_visual(screen, best->visualid, depth, 8);
   }

@@ -30,7 +30,7 @@ class Locked {
   Locked& operator=(const Locked&) = delete;
 };
 
-/// Needs the lock.
+/// Requires the lock.
 void let_go(RemoteContext* context) {
   if (context == nullptr) return;
   --context->current;
@@ -52,7 +52,7 @@ RemoteContext* new_remote_context(const RemoteConfig& config, const RemoteContex
   if (context == nullptr) return nullptr;
   context->config = config;
   context->wish = wish;
-  // As drivers do: the highest version that still has everything.
+  // As drivers do: the highest version that still contains all older functions.
   if (wish.version < 320) context->wish.version = there.compatibility;
   return context;
 }

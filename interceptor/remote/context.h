@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contexts of remote GLX and EGL: what was asked for, and which thread has which. What they draw with is the
-// GL server's.
+// Contexts of remote GLX and EGL: their requested format, and which thread has which context current. Their GL
+// state is on the GL server.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace understudy::interceptor {
 
 constexpr int largest_remote_side = 16384;
 
-/// What an application may ask for; version 0: whatever is compatible with everything.
+/// What an application may request; version 0: the highest compatible version.
 struct RemoteContextWish {
   int version = 0;  ///< 100 * major + 10 * minor
   bool core = false;
@@ -21,8 +21,8 @@ struct RemoteContextWish {
 struct RemoteContext {
   RemoteConfig config;
   RemoteContextWish wish;
-  int current;     ///< threads that have it
-  bool destroyed;  ///< and goes when no thread has it
+  int current;     ///< number of threads that have it current
+  bool destroyed;  ///< freed when no thread has it current
 };
 
 struct RemoteThread {
@@ -35,20 +35,20 @@ struct RemoteThread {
 
 RemoteThread& remote_thread();
 
-/// Null when the GL server cannot make such a context.
+/// Returns null if the GL server cannot create such a context.
 RemoteContext* new_remote_context(const RemoteConfig& config, const RemoteContextWish& wish,
                                   const RemoteContext* share);
-/// Says once what a viewer that asks for OpenGL ES should do.
+/// Logs once what to do about a viewer that requests OpenGL ES.
 void say_no_opengl_es();
 void destroy_remote_context(RemoteContext* context);
 void enter_remote_context(const RemoteThread& thread);
 void leave_remote_context();
 
-/// GLX 1.2 names configurations by their visual alone: the last one that was chosen by it is meant.
+/// GLX 1.2 identifies configurations by their visual alone: the last one chosen for that visual is used.
 void note_choice(const RemoteConfig& config);
 const RemoteConfig& chosen_for(const RemoteConfig& any_of_the_visual);
 
-// Of GLX and EGL; `drawable` as the thread has it.
+// Implemented by GLX and EGL; `drawable` as recorded in RemoteThread.
 void* remote_glx_symbol(const char* name);
 void remote_glx_drawable(void* display, std::uintptr_t drawable, RemoteDrawable* answer);
 void* remote_egl_symbol(const char* name);

@@ -154,7 +154,7 @@ EGLBoolean ChooseConfig(EGLDisplay display, const EGLint* attributes, EGLConfig*
   const RemoteConfig* all = configs_of(*display_of(display), &offered);
   *count = 0;
   for (int i = 0; i < offered && (configs == nullptr || *count < room); ++i) {
-    // With one buffer only pbuffers could be drawn.
+    // Single-buffered configurations would allow only pbuffers.
     if (all[i].double_buffered == 0 || !meets_egl(all[i], attributes)) continue;
     if (configs != nullptr) configs[*count] = const_cast<RemoteConfig*>(&all[i]);
     ++*count;
@@ -248,7 +248,7 @@ EGLSurface CreateWindowSurface(EGLDisplay display, EGLConfig config, EGLNativeWi
   return new_surface(config, static_cast<XID>(window));
 }
 
-/// Platforms of X11 hand windows over by their address.
+/// The X11 platforms pass a pointer to the window's id.
 EGLSurface CreatePlatformWindowSurface(EGLDisplay display, EGLConfig config, void* window, const EGLAttrib*) {
   return CreateWindowSurface(display, config, window != nullptr ? *static_cast<Window*>(window) : 0, nullptr);
 }
@@ -268,7 +268,7 @@ EGLSurface CreatePbufferSurface(EGLDisplay, EGLConfig config, const EGLint* attr
 
 EGLBoolean DestroySurface(EGLDisplay, EGLSurface surface) {
   if (surface == EGL_NO_SURFACE) return failed(EGL_BAD_SURFACE, EGL_FALSE);
-  // One that is current lives on until it is not; so few bytes may as well stay.
+  // A surface that is current on this thread must stay valid; its few bytes are never freed.
   const RemoteThread& thread = remote_thread();
   const auto handle = reinterpret_cast<std::uintptr_t>(surface);
   if (thread.draw != handle && thread.read != handle) free(surface);

@@ -27,7 +27,7 @@ constexpr const char* extensions =
     "GLX_EXT_swap_control GLX_EXT_visual_info GLX_EXT_visual_rating GLX_MESA_swap_control "
     "GLX_SGI_make_current_read GLX_SGI_swap_control GLX_SGIX_fbconfig GLX_SGIX_pbuffer";
 
-/// glXCreatePbuffer's drawables, which the X server knows nothing of.
+/// Drawables of glXCreatePbuffer, which the X server does not know.
 struct Pbuffer {
   XID id;
   int width;
@@ -51,7 +51,7 @@ RemoteContext* context_of(GLXContext context) {
   return reinterpret_cast<RemoteContext*>(context);
 }
 
-/// The configuration that stands for a visual where only that is named.
+/// A configuration of the visual, for functions that identify configurations by visual alone.
 const RemoteConfig* config_of_visual(Display* display, const XVisualInfo* visual) {
   int count = 0;
   const RemoteConfig* configs = remote_configs(display, visual->screen, &count);
@@ -65,7 +65,7 @@ GLXFBConfig* ChooseFBConfig(Display* display, int screen, const int* attributes,
   int offered = 0;
   const RemoteConfig* configs = remote_configs(display, screen, &offered);
   *count = 0;
-  // The application frees it with XFree, which is free.
+  // The application frees it with XFree, which calls free.
   auto* chosen = static_cast<GLXFBConfig*>(malloc(sizeof(GLXFBConfig) * static_cast<size_t>(offered + 1)));
   if (chosen == nullptr) return nullptr;
   for (int i = 0; i < offered; ++i) {
@@ -88,7 +88,7 @@ XVisualInfo* GetVisualFromFBConfig(Display* display, GLXFBConfig config) {
   return config != nullptr ? visual_of(display, *config_of(config)) : nullptr;
 }
 
-/// GLX 1.2's list: some attributes are flags without a value.
+/// Takes GLX 1.2's attribute list, in which some attributes are flags without a value.
 XVisualInfo* ChooseVisual(Display* display, int screen, int* attributes) {
   int wanted[64];
   int length = 0;
@@ -172,13 +172,13 @@ GLXContext CreateContextAttribsARB(Display*, GLXFBConfig config, GLXContext shar
     }
   }
   wish.version = 100 * major + 10 * minor;
-  // GLX_ARB_create_context_profile: without a word, core; before 3.2 there are no profiles.
+  // GLX_ARB_create_context_profile: core if no profile is given; before 3.2 there are no profiles.
   if (!profile_given || wish.version < 320) wish.core = wish.version >= 320;
   if (config == nullptr) return nullptr;
   return reinterpret_cast<GLXContext>(new_remote_context(*config_of(config), wish, context_of(share)));
 }
 
-/// Most of a context's state can be asked for only while it is current, and the GL server's EGL copies none.
+/// Most of a context's state can be queried only while it is current, and the GL server's EGL cannot copy it.
 void CopyContext(Display*, GLXContext, GLXContext, unsigned long) {
   static constinit std::atomic_flag said{};
   if (said.test_and_set()) return;
@@ -196,7 +196,7 @@ Bool make_current(Display* display, GLXDrawable draw, GLXDrawable read, GLXConte
     leave_remote_context();
     return True;
   }
-  // The server must have heard of a window before another connection asks it for it.
+  // The server must have processed the window's creation before our own connection asks for the window.
   if (const Xlib* x = xlib()) x->sync(display, False);
   enter_remote_context({WindowSystem::glx, context_of(context), display, draw, read});
   return True;
@@ -226,8 +226,8 @@ GLXDrawable GetCurrentReadDrawable() {
   return remote_thread().read;
 }
 
-/// The frame's image comes afterwards, with the end of the frame; what the application has asked of its
-/// windows comes before.
+/// The frame's image follows at the end of the frame; what the application has requested of its windows must
+/// reach the server first.
 void SwapBuffers(Display* display, GLXDrawable) {
   if (const Xlib* x = xlib()) x->flush(display);
 }
@@ -291,7 +291,7 @@ GLXPbuffer CreatePbuffer(Display* display, GLXFBConfig config, const int* attrib
     if (attributes[0] == GLX_PBUFFER_WIDTH) made->width = attributes[1];
     if (attributes[0] == GLX_PBUFFER_HEIGHT) made->height = attributes[1];
   }
-  // An id of the application's own, as Xlib would take it for a window.
+  // Allocated from the application's own ids, as Xlib would do for a window.
   made->id = XAllocID(display);
   made->config = config_of(config)->id;
   pthread_mutex_lock(&pbuffer_lock);
@@ -381,12 +381,12 @@ GLXFBConfigSGIX GetFBConfigFromVisualSGIX(Display* display, XVisualInfo* visual)
   return config != nullptr ? handle_of(*config) : nullptr;
 }
 
-/// Only asked whether it is there: the exported entry point does it itself.
+/// Only its presence is checked: the exported entry point does the work.
 void UseXFont(Font, int, int, int) {}
 
 void wait() {}
 
-// Frames come as soon as they are drawn, whatever interval was asked for.
+// Frames are shown as soon as they are drawn, whatever interval was requested.
 int SwapIntervalSGI(int) {
   return 0;
 }

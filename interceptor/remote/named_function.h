@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Functions by the names under which applications ask for them.
+// Looks up functions by the names under which applications request them.
 #pragma once
 
 #include <string.h>
@@ -15,7 +15,7 @@ struct NamedFunction {
   AnyRemoteFunction function;
 };
 
-/// Null where no function has that name.
+/// Returns null if no function has that name.
 template <std::size_t count>
 void* find_function(const NamedFunction (&functions)[count], const char* name) {
   for (const NamedFunction& function : functions) {

@@ -26,7 +26,7 @@ bool is_remote() {
 }
 
 void* remote_symbol(WindowSystem system, const char* name) {
-  // OpenGL's own functions are our exports; which of them the GL server has is seen when they are called.
+  // OpenGL's own functions are our exports; whether the GL server has one shows only when it is called.
   if (strncmp(name, "gl", 2) == 0 && strncmp(name, "glX", 3) != 0) return own_entry(name);
   return system == WindowSystem::egl ? remote_egl_symbol(name) : remote_glx_symbol(name);
 }

@@ -44,7 +44,7 @@ constinit pthread_mutex_t x_lock = PTHREAD_MUTEX_INITIALIZER;
 constinit Server* servers = nullptr;
 constinit Xlib xlib_functions{};
 constinit Xcb xcb_functions{};
-constinit int xlib_state = 0;  ///< 1: there, -1: not
+constinit int xlib_state = 0;  ///< 1: available, -1: not
 constinit int xcb_state = 0;
 
 class Locked {
@@ -88,7 +88,7 @@ bool open_xcb() {
          find_in_library(library, "xcb_get_maximum_request_length", xcb.get_maximum_request_length);
 }
 
-/// Needs the lock. Null where there is no connection.
+/// Requires the lock. Returns null without a connection.
 Server* server_of(Display* display) {
   for (Server* server = servers; server != nullptr; server = server->next) {
     if (server->display == display) return server->connection == nullptr ? nullptr : server;
@@ -125,12 +125,12 @@ bool geometry_of(xcb_connection_t* connection, XID drawable, Geometry* geometry)
   return true;
 }
 
-/// Errors of windows that are gone.
+/// Discards events, which are errors of windows that no longer exist.
 void forget_events(xcb_connection_t* connection) {
   while (xcb_generic_event_t* event = xcb_functions.poll_for_event(connection)) free(event);
 }
 
-/// Through the socket, in as many pieces as requests may be long.
+/// Sends the image through the socket, in as many parts as the maximum request length requires.
 void send_image(xcb_connection_t* connection, xcb_drawable_t drawable, xcb_gcontext_t gc, std::uint8_t depth,
                 const RemoteImage& image) {
   const int row_bytes = image.width * 4;

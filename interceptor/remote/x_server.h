@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The X server, by a connection of our own beside the application's: its errors come back as events that nobody
-// need handle (a window may be gone at any moment), and images may be shown whatever the application's
-// threads do with theirs.
+// A connection of our own to the X server, beside the application's: its errors arrive as events that may be
+// ignored (a window may vanish at any moment), and images can be shown whatever the application's threads do
+// with their connection.
 #pragma once
 
 #include <X11/Xlib.h>
@@ -11,7 +11,7 @@
 
 namespace understudy::interceptor {
 
-/// Xlib's functions that stand in for GLX's use of it; null where Xlib is not to be had.
+/// The Xlib functions that remote GLX and EGL need.
 struct Xlib {
   decltype(&XGetVisualInfo) get_visual_info;
   decltype(&XFree) free;
@@ -20,13 +20,13 @@ struct Xlib {
   decltype(&XOpenDisplay) open_display;
 };
 
-/// Opened on first use; null, said once, when it cannot be.
+/// Opens Xlib on first use; if that fails, logs it once and returns null.
 const Xlib* xlib();
 
-/// The server that DISPLAY names, opened once for whoever names no display; null where there is none.
+/// The server named by DISPLAY, opened once, for callers that name no display; null if there is none.
 Display* default_display();
 
-/// The drawable's size; false when there is no such drawable.
+/// Stores the drawable's size; returns false if there is no such drawable.
 bool extent_of(Display* display, XID drawable, int* width, int* height);
 
 /// Returns when the image is on the screen.

@@ -29,9 +29,9 @@ struct Functions {
 };
 
 constinit Functions functions{};
-constinit int state = 0;  ///< 1: there, -1: not
+constinit int state = 0;  ///< 1: available, -1: not
 
-/// Nothing is said where the library is not there: images then go through the socket.
+/// Logs nothing if the library is missing: images then go through the socket.
 bool open_functions() {
   void* xcb = real_dlopen("libxcb.so.1", RTLD_NOW | RTLD_LOCAL);
   void* shm = real_dlopen("libxcb-shm.so.0", RTLD_NOW | RTLD_LOCAL);
@@ -49,8 +49,8 @@ bool open_functions() {
          find_in_library(shm, "xcb_shm_put_image", f.put_image);
 }
 
-/// A request with a descriptor would end a connection that cannot carry one, as would one that the server does
-/// not know.
+/// Checks first, because a request with a descriptor ends a connection that cannot carry one, and so does a
+/// request that the server does not support.
 bool takes_descriptors(xcb_connection_t* connection) {
   sockaddr_storage address{};
   socklen_t length = sizeof address;
@@ -106,7 +106,7 @@ bool make_room(XSharedMemory* memory, xcb_connection_t* connection, std::size_t 
   memory->refused = state < 0 || (memory->bytes == nullptr && !takes_descriptors(connection));
   if (memory->refused) return false;
   release(memory, connection);
-  // Windows grow by a few pixels at a time.
+  // Windows grow by a few pixels at a time, so half as much again is reserved.
   return attach(memory, connection, size + size / 2);
 }
 

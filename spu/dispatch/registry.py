@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 
-# The type of each value as the stream knows it; a type that is missing here stops the generator.
+# The type of each value in the stream; a type that is missing here stops the generator.
 VALUE_TYPES = {
     "GLboolean": "boolean", "GLenum": "enumeration", "GLbitfield": "bitfield",
     "GLbyte": "int8", "GLubyte": "uint8", "GLshort": "int16", "GLushort": "uint16", "GLint": "int32", "GLuint": "uint32",
@@ -15,19 +15,19 @@ VALUE_TYPES = {
     "GLhalfNV": "float16", "GLfloat": "float32", "GLclampf": "float32", "GLdouble": "float64", "GLclampd": "float64",
     "GLfixed": "fixed", "GLclampx": "fixed", "GLchar": "character", "GLcharARB": "character", "void": "untyped",
     "GLhandleARB": "uint32", "GLvdpauSurfaceNV": "int64",
-    # Addresses of this process: they mean nothing in a stored or sent stream.
+    # Addresses in this process, which are meaningless in a stored or sent stream.
     "GLsync": "address", "GLeglImageOES": "address", "GLeglClientBufferEXT": "address", "GLVULKANPROCNV": "address",
     "GLDEBUGPROC": "address", "GLDEBUGPROCARB": "address", "GLDEBUGPROCKHR": "address", "GLDEBUGPROCAMD": "address",
     "struct _cl_context": "address", "struct _cl_event": "address",
 }
 
-# Name spaces of object names. Shaders share theirs with programs; assembly programs have one of their own.
+# Name spaces of object names. Shaders share one with programs; assembly programs have their own.
 OBJECT_KINDS = [
     "none", "texture", "buffer", "program", "assembly_program", "framebuffer", "renderbuffer", "vertex_array", "query",
     "sampler", "transform_feedback", "program_pipeline", "sync", "display_list",
 ]
 
-# The registry gives their `name` the length 1; it is a string whose length is another argument.
+# The registry specifies the length 1 for `name`, but it is a string whose length is another argument.
 WRONG_LENGTHS = {
     "glProgramNamedParameter4dNV", "glProgramNamedParameter4dvNV",
     "glProgramNamedParameter4fNV", "glProgramNamedParameter4fvNV",
@@ -36,7 +36,7 @@ WRONG_LENGTHS = {
 
 @dataclass(frozen=True)
 class Extent:
-    """How much a pointer argument points at: one of the rules that arguments.txt describes."""
+    """How much memory a pointer argument refers to: one of the rules described in arguments.txt."""
     rule: str
     argument: str = ""  # the argument that the rule counts by
     factor: int = 1
@@ -47,11 +47,11 @@ class Extent:
 class Parameter:
     type: str    # "const GLfloat *"
     name: str
-    length: str  # the registry's `len`, "" when it has none
+    length: str  # the registry's `len`, "" if it has none
     group: str = ""
     object: str = "none"
     extent: Extent = Extent("value")
-    null_with: str = ""  # the argument that is null where this one may be; its own name: it may always be
+    null_with: str = ""  # the argument that must be null for this one to be null; its own name: no condition
 
     @property
     def base(self):
@@ -71,7 +71,7 @@ class Command:
     name: str    # "glClear"
     result: str  # "void"
     parameters: tuple
-    object: str = "none"  # what the result names
+    object: str = "none"  # the kind of object that the result names
 
     @property
     def member(self):
@@ -153,7 +153,7 @@ def null_with(command, parameter, rules):
 
 
 def read_commands(registry, rules=()):
-    """Every command of the registry, sorted by name, whatever version or extension brought it."""
+    """Every command of the registry, sorted by name, regardless of the version or extension that introduced it."""
 
     def text_before_name(element):
         text = "".join(element.itertext())
@@ -177,7 +177,7 @@ def read_commands(registry, rules=()):
 
 
 def read_enumerants(registry):
-    """GL's enumerants, sorted by value and then by name; those of other interfaces and of 64 bits are left out."""
+    """GL's enumerants, sorted by value and then by name, without those of other interfaces and those of 64 bits."""
     found = {}
     for block in ElementTree.parse(registry).getroot().findall("enums"):
         for element in block.findall("enum"):
@@ -191,7 +191,7 @@ def read_enumerants(registry):
 
 
 def read_egl_commands(header):
-    """The commands that <EGL/egl.h> declares: one line each, `EGLAPI EGLint EGLAPIENTRY eglGetError (void);`."""
+    """The commands declared in <EGL/egl.h>, one per line: `EGLAPI EGLint EGLAPIENTRY eglGetError (void);`."""
     commands = []
     declaration = re.compile(r"^EGLAPI (.+?) ?EGLAPIENTRY (egl\w+) \((.*)\);$", re.MULTILINE)
     for result, name, parameters in declaration.findall(header.read_text()):

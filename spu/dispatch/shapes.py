@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes what is known of each command at run time: its shape, its names, and the way between arguments and words."""
+"""Generates what is known of each command at run time: its shape, its names, and conversions between arguments and words."""
 
 from registry import OBJECT_KINDS, VALUE_TYPES
 
@@ -9,12 +9,12 @@ EXTENT_RULES = [
     "retained", "address", "unknown",
 ]
 
-# The argument that says how large an image is, by the name it has in the command.
+# The arguments that specify an image's size and format, by their possible names in a command.
 IMAGE_ARGUMENTS = {"width": ("width", "w", "count"), "height": ("height", "h"), "depth": ("depth",), "format": ("format",), "type": ("type",)}
 
 
 class Texts:
-    """One long text and offsets into it: no pointers that the loader would have to relocate."""
+    """One long text and offsets into it, so that there are no pointers for the loader to relocate."""
 
     def __init__(self):
         self.offsets, self.texts, self.end = {}, [], 0
@@ -35,7 +35,7 @@ def rows(values, per_row):
 
 
 def stable_id(name):
-    """FNV-1a of the name: the same in every version of the registry, whatever is added to it."""
+    """FNV-1a hash of the name: the same in every version of the registry, whatever is added to it."""
     value = 0x811C9DC5
     for byte in name.encode():
         value = (value ^ byte) * 0x01000193 & 0xFFFFFFFF
@@ -43,8 +43,8 @@ def stable_id(name):
 
 
 def is_plain(command):
-    """No result, and every argument is a value or an array of a length that the registry fixes. This is about the
-    signature alone: glDrawArrays is plain, though what it reads may lie in the caller's arrays."""
+    """No result, and every argument is a value or an array whose length the registry fixes. This only concerns the
+    signature: glDrawArrays is plain although it may read arrays in the caller's memory."""
     return command.result == "void" and all(
         (p.pointer == 0 and VALUE_TYPES[p.base] != "address")
         or (p.pointer == 1 and p.input and p.extent.rule == "counted" and not p.extent.argument)
@@ -53,7 +53,7 @@ def is_plain(command):
 
 
 def plain_words(command):
-    """Words of a plain call's record: header, a word an argument, and for every array its {bytes, data}."""
+    """Words of a plain call's record: header, one word per argument, and {bytes, data} for every array."""
     if not is_plain(command):
         return 0
     words = 1 + len(command.parameters)
@@ -65,7 +65,7 @@ def plain_words(command):
     return words
 
 
-ID_SLOTS = 1 << 13  # more than twice as many as there are commands, so that chains of slots stay short
+ID_SLOTS = 1 << 13  # more than twice the number of commands, so that probe sequences stay short
 
 
 def id_slots(commands):
@@ -319,7 +319,7 @@ SIZES = {
 
 
 def every_slot(commands):
-    """The table of a class that has a function for each command, and fill(), which sets every slot to it."""
+    """The table of a class that has a function for each command, and fill(), which sets every slot."""
     functions = ",\n".join(f"      &{c.name}" for c in commands)
     return f"""\
   /// As data: thousands of assignments take the compiler up to 20 s, and each of them instructions.

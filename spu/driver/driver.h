@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The end of every chain: the real OpenGL. It is no unit of its own, its slots are the driver's pointers.
+// The end of every chain: the real OpenGL. It is not a unit; its slots are the driver's own function pointers.
 #pragma once
 
 #include "spu/unit_description.h"

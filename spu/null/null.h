@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The null unit: discards every call. What the application's own half of the work costs is what is left.
+// The null unit: discards every call, which leaves only the cost of the application's own work.
 #pragma once
 
 #include "spu/unit_description.h"

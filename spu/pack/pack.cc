@@ -8,7 +8,7 @@
 namespace understudy::spu {
 namespace {
 
-/// In scope while a call is packed: all of its records are kept, or none.
+/// In scope while a call is packed: if that throws, all of the call's records are removed.
 class WholeRecords {
  public:
   explicit WholeRecords(Records& records) : records_(records), words_(records.words().size()) {}
@@ -61,7 +61,7 @@ std::uint64_t Pack::call(CallId call, const std::uint64_t* words) {
     const PackedCall last{call, words};
     return hand_on(&last);
   }
-  // Between glBegin and glEnd the block stays open: what follows may have to be put before glBegin.
+  // Between glBegin and glEnd the block stays open: later records may have to be inserted before glBegin.
   const bool full =
       records_.words().size() + records_.payload().size() >= block_words_ && !encoder_.inside_begin();
   if (when == HandOn::now || full) hand_on();
@@ -69,9 +69,9 @@ std::uint64_t Pack::call(CallId call, const std::uint64_t* words) {
 }
 
 std::uint64_t Pack::hand_on(const PackedCall* last) {
-  // A unit behind us may settle the chain while our calls are being made.
+  // A unit below may settle the chain while our calls are being made.
   if (records_.empty() || handing_on_) return 0;
-  // Whatever becomes of them: no call is made twice.
+  // The records are cleared even if taking them fails: no call is made twice.
   struct HandedOn {
     Pack& pack;
     ~HandedOn() {

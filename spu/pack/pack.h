@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pack unit: turns calls into records and hands them on in blocks (Humphreys et al. 2002), to unpack or to
-// link.
+// The pack unit: encodes calls into records and passes them on in blocks (Humphreys et al. 2002), to unpack or
+// to remote.
 #pragma once
 
 #include "spu/pack/record_taker.h"
@@ -15,7 +15,7 @@ class Pack final : public Unit {
 
   Pack(Chain& chain, std::size_t block_words);
 
-  /// Told by the unit behind it, which takes what is packed.
+  /// Called by the unit after it in the chain, which takes the packed records.
   void hand_to(RecordTaker& taker) {
     taker_ = &taker;
     if (!taker.in_this_process()) encoder_.hide_addresses();
@@ -29,7 +29,7 @@ class Pack final : public Unit {
   bool inside_begin() const { return encoder_.inside_begin(); }
 
   std::uint64_t call(CallId call, const std::uint64_t* words);
-  /// Everything packed so far is made; answers the result of `last`, when somebody waits for it.
+  /// Passes on everything packed so far; returns the result of `last` if that is not null.
   std::uint64_t hand_on(const PackedCall* last = nullptr);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who takes what pack has packed: unpack in the same chain, or link, whose calls are made elsewhere.
+// The receiver of packed records: unpack in the same chain, or remote, whose calls are made in another process.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace understudy::spu {
 
-/// How soon a call must be handed on.
+/// How soon a call must be passed on.
 enum class HandOn {
   later,
   now,
-  and_wait,  ///< its result, or what it writes, is wanted
+  and_wait,  ///< the caller needs its result, or what it writes
 };
 
-/// A call whose records are the last ones of those that are handed on.
+/// The call whose records are the last of those that are passed on.
 struct PackedCall {
   CallId call{};
   const std::uint64_t* words = nullptr;
@@ -29,13 +29,13 @@ class RecordTaker {
 
   /// The result of a call that need not be packed.
   virtual std::optional<std::uint64_t> known(CallId /*call*/, const std::uint64_t* /*words*/) { return {}; }
-  /// Before a call is packed: appends what must be known where it is made.
+  /// Called before a call is packed: appends records that must precede it.
   virtual void before(CallId /*call*/, const std::uint64_t* /*words*/, Records& /*to*/) {}
   virtual HandOn when(CallId call, bool inside_begin) = 0;
-  /// The calls are made in this process, so addresses mean something there, and what the encoder asks may
-  /// depend on calls that are still packed.
+  /// True if the calls are made in this process: addresses are valid there, and driver queries by the encoder
+  /// may depend on calls that are still packed.
   virtual bool in_this_process() const { return true; }
-  /// Has the calls made, in order. Answers the result of `last`; null: nobody waits.
+  /// Has the calls made, in order. Returns the result of `last`; if `last` is null, nobody waits for a result.
   virtual std::uint64_t take(const Records& records, const PackedCall* last) = 0;
 };
 

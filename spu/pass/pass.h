@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pass unit: leaves every slot the next one's. It shows that a unit that does nothing costs nothing.
+// The pass unit: leaves every slot as it is. It shows that a unit that does nothing costs nothing.
 #pragma once
 
 #include "spu/unit_description.h"

@@ -62,7 +62,7 @@ CallFigures Figures::total() const {
 
 std::string figures_text(const Figures& figures) {
   const CallFigures all = figures.total();
-  // Where OpenGL is in the same process, nobody has to read of round trips.
+  // If OpenGL is in the same process, there are no round trips to show.
   const bool travels = all.round_trips.get() > 0;
   std::string text = fmt::format("{:40} {:>12} {:>12} {:>10} {:>14}{}\n", "call", "calls", "ms", "ns a call",
                                  "bytes", travels ? "  round trips" : "");

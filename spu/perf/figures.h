@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is counted of calls and of frames, and how it is told.
+// The figures that are counted of calls and frames, and their output formats.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace understudy::spu {
 
-/// Counted by one thread, read by any.
+/// Counted by one thread, read by any thread.
 class Count {
  public:
   Count() = default;
@@ -30,8 +30,8 @@ class Count {
 
 struct CallFigures {
   Count calls;
-  Count nanoseconds;  ///< in everything below the unit, with the reading of the clock
-  Count bytes;        ///< that the call's pointers stand for
+  Count nanoseconds;  ///< in everything below the unit, including reading the clock
+  Count bytes;        ///< that the call's pointers refer to
   Count round_trips;  ///< to a GL server (run --remote), which the call waited for
 
   void add(const CallFigures& other);
@@ -40,16 +40,16 @@ struct CallFigures {
 
 struct Figures {
   std::array<CallFigures, call_count> by_call;
-  Count frames;             ///< that ended
-  CallFigures in_frames;    ///< the sum over frames that ended
-  CallFigures largest;      ///< each figure of the frame that had most of it
+  Count frames;             ///< ended frames
+  CallFigures in_frames;    ///< sum over the ended frames
+  CallFigures largest;      ///< each figure's maximum over the frames
   Count frame_nanoseconds;  ///< from frame end to frame end
 
   void add(const Figures& other);
   CallFigures total() const;
 };
 
-/// Calls that were made, the costliest first, as a table for people.
+/// The calls that were made, costliest first, as a readable table.
 std::string figures_text(const Figures& figures);
 std::string figures_json(const Figures& figures);
 

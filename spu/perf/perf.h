@@ -33,9 +33,9 @@ class Perf final : public Unit {
   Chain& chain_;
   PerfFile& file_;
   Figures& figures_;
-  /// Of the process: threads that wait at once may count each other's.
+  /// Counter of the process: threads that wait at the same time may count each other's round trips.
   const std::atomic<std::uint64_t>& round_trips_;
-  CallFigures frame_;  ///< the one that is under way
+  CallFigures frame_;  ///< the current frame
   Clock::time_point frame_started_ = Clock::now();
   bool abandoned_ = false;
 };

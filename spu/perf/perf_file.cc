@@ -28,7 +28,7 @@ void PerfFile::end_context(const Figures& figures) {
 void PerfFile::write_when_due() {
   if (name_.empty()) return;
   const std::unique_lock lock(mutex_, std::try_to_lock);
-  // Whoever has it is writing.
+  // Another thread that holds the lock is writing.
   if (!lock || std::chrono::steady_clock::now() < due_) return;
   write_locked();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the figures of a process's contexts come together and are told: nobody promises that a viewer ends in
-// order, so a file is written again and again.
+// Sums the figures of a process's contexts and writes them. A file is rewritten regularly, because a viewer may
+// end without notice.
 #pragma once
 
 #include <chrono>
@@ -14,14 +14,14 @@ namespace understudy::spu {
 
 class PerfFile {
  public:
-  /// An empty name stands for the standard error output, which gets its table at the end only.
+  /// An empty name means standard error, which gets its table only at the end.
   explicit PerfFile(std::string name) : name_(std::move(name)) {}
 
   Figures& begin_context();
-  /// Its figures stay counted; the table is written.
+  /// Adds the context's figures to those of ended contexts, and writes the table.
   void end_context(const Figures& figures);
 
-  /// At most every half second; nothing without a file.
+  /// Writes at most every half second, and only to a file.
   void write_when_due();
   void write();
 

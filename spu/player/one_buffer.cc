@@ -7,7 +7,7 @@
 namespace understudy::spu {
 namespace {
 
-/// What the current context of this thread stands on.
+/// The driver and the format of this thread's current context.
 struct Current {
   const DispatchTable* driver = nullptr;
   bool double_buffered = false;
@@ -37,12 +37,12 @@ GLuint bound_framebuffer(GLenum target) {
   return GLuint(bound);
 }
 
-/// Calls `ask(values)` and changes what that has answered about buffers. `framebuffer()` is the one that was
-/// asked about.
+/// Calls `ask(values)` and replaces buffer names in its results. `framebuffer()` is the framebuffer that is
+/// queried.
 template <class Value, class Ask, class Framebuffer>
 void answer(GLenum name, Value* values, const Ask& ask, const Framebuffer& framebuffer) {
   if (!current.double_buffered || (name != GL_DOUBLEBUFFER && !holds_a_buffer(name))) return ask(values);
-  // Questions that are errors leave the application's memory alone.
+  // A query that fails must leave the application's memory unchanged.
   constexpr auto unanswered = Value(0x55);
   Value value = unanswered;
   ask(&value);
@@ -70,7 +70,7 @@ struct OneBuffer::Slots {
     (current.driver->*call)(framebuffer, name_below(buffer));
   }
 
-  /// Lists name single buffers; GL_BACK, which is allowed alone, means the left one.
+  /// Lists contain single buffers; GL_BACK is only allowed as the only entry, and means the left back buffer.
   template <class Call>
   static void with_list(GLsizei count, const GLenum* buffers, const Call& call) {
     std::array<GLenum, GL_DRAW_BUFFER15 - GL_DRAW_BUFFER0 + 1> below{};
@@ -125,7 +125,7 @@ struct OneBuffer::Slots {
 };
 
 OneBuffer::OneBuffer(const DispatchTable& driver) : driver_(driver), table_(driver) {
-  // What the driver lacks stays lacking.
+  // Functions that the driver lacks stay null.
   const auto put = [](auto& slot, auto function) {
     if (slot != nullptr) slot = function;
   };

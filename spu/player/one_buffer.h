@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A driver whose window has one colour buffer, a front buffer, made to look as if there were the back buffer of
-// the recorded application's window.
+// Makes a driver whose window has a single colour buffer, a front buffer, look as if the window had the back
+// buffer of the recorded application's window.
 //
-// Applications name the back buffer to draw into it, to read from it and to ask about it. Each name is replaced
-// on its way down and put back into what is answered; nothing is remembered, so display lists and
-// glPushAttrib hold what the driver knows. An application that names the front buffer draws into the same
-// memory, and is told afterwards that it is the back buffer.
+// Applications name the back buffer to draw into it, to read from it and to query it. Each name is replaced on
+// its way to the driver and restored in the results of queries. No state is kept, so display lists and
+// glPushAttrib hold the driver's names. An application that names the front buffer draws into the same memory,
+// and queries then return the back buffer.
 #pragma once
 
 #include "dispatch/table.h"
@@ -20,7 +20,7 @@ class OneBuffer {
   OneBuffer& operator=(const OneBuffer&) = delete;
 
   const DispatchTable& table() const { return table_; }
-  /// The context that is current on this thread from now on has, or has not, a back buffer.
+  /// Declares whether the context that is current on this thread from now on has a back buffer.
   void made_current(bool double_buffered);
 
  private:

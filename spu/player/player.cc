@@ -21,10 +21,10 @@
 namespace understudy::spu {
 namespace {
 
-/// What a file may claim of a drawable.
+/// Limit for the sides of a drawable in a stream.
 constexpr std::uint64_t largest_side = 16384;
 
-/// Memory is taken for all of it.
+/// Checks the size first, because memory is allocated for the whole drawable.
 bool may_be_drawable(std::uint64_t width, std::uint64_t height) {
   return width <= largest_side && height <= largest_side &&
          width * height <= compositor::limits::max_window_pixels;
@@ -44,7 +44,7 @@ using Clock = std::chrono::steady_clock;
 struct Player::Group {
   std::shared_ptr<ShareGroup> tracked = std::make_shared<ShareGroup>();
   std::shared_ptr<ObjectNames> names = std::make_shared<ObjectNames>();
-  std::vector<std::uint64_t> members;  ///< that the window system has
+  std::vector<std::uint64_t> members;  ///< that exist in the window system
   std::uint64_t number = 0;            ///< of its first context
 };
 
@@ -53,7 +53,7 @@ struct Player::Context {
   Decoder decoder;
   Chain chain;
   PlayedContext played;
-  bool counts_frames = false;  ///< nobody in the chain does
+  bool counts_frames = false;  ///< no unit of the chain counts them
   Clock::time_point frame_started = Clock::now();
 
   Context(std::shared_ptr<Group> share_group, const DispatchTable& driver, const RecordedContext& context,
@@ -133,7 +133,7 @@ std::string Player::play(const Record& record) {
   }
 }
 
-/// A context of a group that is gone, or was never current, still stands for its group.
+/// A context that was destroyed, or was never current, still identifies its group.
 std::shared_ptr<Player::Group> Player::group_of(const RecordedContext& context) {
   if (context.shares_with == 0) return std::make_shared<Group>();
   auto& group = groups_[context.shares_with];
@@ -238,7 +238,7 @@ std::string Player::end_context(const Record& record) {
   found->second->chain.abandon();
   const std::shared_ptr<Group> group = found->second->group;
   contexts_.erase(found);
-  // Contexts that appear later may share objects with it: the last one of a group stays.
+  // Later contexts may share objects with this one, so the last context of a group is kept.
   if (group->members.size() == 1) return {};
   std::erase(group->members, number);
   windows_.destroy(number);

@@ -18,14 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// lib/understudy of this installation, by the place of the program or of the library under the viewer. Null:
-/// that is not known.
+/// lib/understudy of this installation, derived from the path of this program, or of the library in the
+/// viewer's process; nothing if the path is unknown.
 std::optional<fs::path> libraries_folder() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&libraries_folder), &info) == 0 || info.dli_fname == nullptr)
     return std::nullopt;
   std::error_code error;
-  // Of a program the name is what it was started by.
+  // For a program, dli_fname is only the name that it was started with.
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   const fs::path object = info.dli_fname;
   if (object.is_absolute() && !fs::equivalent(object, program, error)) return object.parent_path();

@@ -10,7 +10,7 @@
 
 namespace understudy::spu {
 
-/// Each plug-in is a type of units of its own: its address tells them apart.
+/// Each plugin is a separate type of unit, identified by its address.
 class UnitOfPlugin final : public Unit {
  public:
   UnitOfPlugin(Chain& chain, const UnitPlugin& plugin, std::unique_ptr<PluginUnit> unit)
@@ -77,7 +77,7 @@ std::unique_ptr<Unit> make(const UnitPlace& place) {
 }  // namespace
 
 UnitDescription description_of(UnitPlugin& plugin) {
-  // Other threads may draw with its units already.
+  // Other threads may already draw with its units.
   if (plugin.host != &host) plugin.host = &host;
   return {.name = plugin.name, .help = plugin.help, .options = plugin.options, .make = make, .plugin = &plugin};
 }

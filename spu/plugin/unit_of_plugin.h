@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A unit of the chain that does what a loaded library's unit says.
+// The unit of a chain that forwards to the unit of a loaded library.
 #pragma once
 
 #include "spu/plugin/unit_plugin.h"
@@ -7,7 +7,7 @@
 
 namespace understudy::spu {
 
-/// Gives `plugin` its host.
+/// Describes the unit of `plugin`, and sets the plugin's host.
 UnitDescription description_of(UnitPlugin& plugin);
 
 }  // namespace understudy::spu

@@ -19,7 +19,7 @@ using Text = fmt::memory_buffer;
 
 constexpr std::size_t most_values_shown = 16;
 constexpr std::size_t most_characters_shown = 64;
-/// No object lies below this address on Linux (vm.mmap_min_addr): such a pointer is an offset into a buffer.
+/// Linux maps no object below this address (vm.mmap_min_addr): such a pointer is an offset into a buffer.
 constexpr std::uint64_t lowest_address = 65536;
 
 template <class... Arguments>
@@ -28,7 +28,7 @@ void append(Text& text, fmt::format_string<Arguments...> format, Arguments&&... 
 }
 
 void append_enumerant(Text& text, std::uint32_t value, std::uint16_t group) {
-  // Dozens of enumerants are 0 or 1; without a group no name is better than another.
+  // Dozens of enumerants are 0 or 1, and without a group none of their names is preferable.
   const char* name = group != 0 || value > 1 ? enum_name(value, group) : nullptr;
   if (name != nullptr) {
     append(text, "{}", name);
@@ -55,7 +55,7 @@ void append_bits(Text& text, std::uint32_t value, std::uint16_t group) {
   }
 }
 
-/// `word` as dispatch/call_words.h makes it of a value of this type.
+/// `word` as dispatch/call_words.h encodes a value of this type.
 void append_value(Text& text, ValueType type, std::uint16_t group, std::uint64_t word) {
   switch (type) {
     case ValueType::none:
@@ -72,7 +72,7 @@ void append_value(Text& text, ValueType type, std::uint16_t group, std::uint64_t
     case ValueType::bitfield:
       return append_bits(text, std::uint32_t(word), group);
     case ValueType::int32:
-      // Commands of OpenGL 1.0 take some enumerants as integers, 1 to 4 among them as numbers of components.
+      // Commands of OpenGL 1.0 take some enumerants as integers; 1 to 4 may also be numbers of components.
       if (group != 0 && std::int64_t(word) > 0xff) return append_enumerant(text, std::uint32_t(word), group);
       [[fallthrough]];
     case ValueType::int8:
@@ -105,7 +105,7 @@ std::uint64_t value_at(const std::byte* bytes) {
   return std::uint64_t(value);
 }
 
-/// The value of this type in memory, as a word.
+/// Reads a value of this type from memory, as a word.
 std::uint64_t word_at(ValueType type, const std::byte* bytes) {
   switch (type) {
     case ValueType::int8:
@@ -148,8 +148,7 @@ void append_quoted(Text& text, std::string_view characters) {
   append(text, "\"{}", characters.size() > most_characters_shown ? "..." : "");
 }
 
-/// Whether what the argument points at must be the application's memory, and holds values of the argument's
-/// type.
+/// Whether the argument must point to memory of the application that holds values of the argument's type.
 bool may_be_read(const ParameterShape& parameter) {
   if (parameter.pointer != 1 || parameter.type == ValueType::untyped) return false;
   switch (parameter.rule) {
@@ -165,7 +164,7 @@ bool may_be_read(const ParameterShape& parameter) {
   }
 }
 
-/// An offset, or an address of a process that is not this one.
+/// Appends an offset, or an address in another process.
 void append_number(Text& text, CallId call, std::size_t index, const std::uint64_t* words) {
   const ParameterShape& parameter = call_shape(call).parameters()[index];
   const bool texts = parameter.rule == ExtentRule::text || parameter.rule == ExtentRule::text_or_counted;

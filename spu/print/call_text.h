@@ -14,15 +14,15 @@
 
 namespace understudy::spu {
 
-/// True when the call writes through a pointer or answers something that its text shows: then the text is made
-/// after the call, otherwise before it, so that the last line of a crash names it.
+/// True if the text shows memory that the call writes or a result. The text is then made after the call,
+/// otherwise before it, so that after a crash the last line names the call that crashed.
 bool shows_outcome(CallId call);
 
-/// Pointer arguments that are only shown, and never followed: bit i for argument i.
+/// Pointer arguments that are printed but never dereferenced: bit i for argument i.
 using UnreadArguments = std::uint32_t;
 
-/// What lies behind pointers is read only where it must be the application's memory; offsets into buffers are
-/// not followed, nor are `unread` pointers. `result` is the result's word.
+/// Appends the text of a call; `result` is the result's word. Memory behind a pointer is read only if it must
+/// be the application's: offsets into buffers and `unread` pointers are not dereferenced.
 void append_call(fmt::memory_buffer& text, CallId call, const std::uint64_t* words, std::uint64_t result,
                  UnreadArguments unread = 0);
 

@@ -28,7 +28,7 @@ int PrintFile::begin_context() {
 
 void PrintFile::line(int context, std::string_view text) {
   const std::scoped_lock lock(mutex_);
-  // Most applications have one context: only further ones are told apart.
+  // Most applications have one context, so only further contexts are named.
   if (context > 1) fmt::print(file_, "[context {}] ", context);
   fmt::print(file_, "{}\n", text);
   std::fflush(file_);
@@ -80,7 +80,7 @@ void Print::frame_ended(FrameEnd kind) {
   const bool printed = prints();
   if (printed) file_.line(context_, fmt::format("// frame {} ends", frame_));
   ++frame_;
-  // Frames that are not printed cost nothing: the slots are the next unit's then.
+  // Frames that are not printed cost nothing: their slots are the next unit's.
   if (printed != prints()) chain_.refill();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The print unit: a line for every call, for people.
+// The print unit: prints a readable line for every call.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,14 +15,14 @@
 
 namespace understudy::spu {
 
-/// What the contexts of a process print into. An empty name stands for the standard error output.
+/// The output of all contexts of a process. An empty name means standard error.
 class PrintFile {
  public:
   explicit PrintFile(const std::string& name);
 
-  /// Contexts count from 1.
+  /// Returns the context's number, from 1.
   int begin_context();
-  /// Writes a line at once: the application may end with the next call.
+  /// Writes a line immediately, because the application may end with the next call.
   void line(int context, std::string_view text);
 
  private:
@@ -35,7 +35,7 @@ class Print final : public Unit {
  public:
   static constexpr char tag = '>';
 
-  /// `calls`: shell patterns of command names, separated by spaces. Frames count from 1.
+  /// `calls`: shell patterns of command names, separated by spaces. Frames are numbered from 1.
   Print(Chain& chain, const std::string& file, IntegerRange frames, const std::string& calls);
 
   const char* tag_address() const override { return &tag; }
@@ -53,7 +53,7 @@ class Print final : public Unit {
   const int context_;
   const IntegerRange frames_;
   std::vector<bool> wanted_;  ///< by call
-  std::int64_t frame_ = 1;    ///< the one that is under way
+  std::int64_t frame_ = 1;    ///< the current frame
   fmt::memory_buffer line_;
 };
 

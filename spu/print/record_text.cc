@@ -26,7 +26,7 @@ bool has_answer(CallId call) {
   return call_shape(call).result != ValueType::none || answers_names(call);
 }
 
-/// The payload is gone when the answer comes.
+/// Such a call cannot wait for its answer, because the payload is gone by then.
 bool refers_to_payload(const Record& record, const CallShape& shape) {
   for (std::size_t p = 0; p < shape.parameter_count && p + 1 < record.words.size(); ++p) {
     const bool pointer = shape.parameters()[p].pointer != 0;
@@ -39,7 +39,7 @@ std::string or_number(const char* name, std::uint64_t value) {
   return name != nullptr ? name : fmt::format("{:#x}", value);
 }
 
-/// The arguments that the call writes to are not in the record.
+/// Arguments that the call writes to are not in the record: prints "..." instead of NULL.
 std::string with_outputs(std::string text, const CallShape& shape, std::uint32_t outputs) {
   for (std::size_t p = 0; p < shape.parameter_count; ++p) {
     if ((outputs >> p & 1U) == 0) continue;
@@ -77,7 +77,7 @@ std::string RecordText::call_line(const Record& record, const Record* answers) {
     words[p] = reinterpret_cast<std::uintptr_t>(names->data());
     outputs &= ~(1U << p);
   }
-  // Strings and mappings that OpenGL answered stayed where they were.
+  // Strings and mappings that OpenGL returned are not in the stream.
   const bool number = shape.result_pointer == 0;
   const std::uint64_t result =
       number && answers != nullptr && answers->arguments().size() > 1 ? answers->arguments()[1] : 0;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records of a stream as a person would write them, one line each:
+// Records of a stream as readable lines, one per record:
 //
 //   glGenTextures(n = 2, textures = {3, 4})
 //   frame 7, 512 x 384
 //
-// A call that answers something is told when its answer is known, which is the next record of its thread.
+// A call with an answer is printed once the answer is known, which is the next record of its thread.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,13 @@ namespace understudy::spu {
 
 class RecordText {
  public:
-  /// Lines go to `line`, without their end. `wants_call` says which calls are told; without it all, and the
-  /// events too.
+  /// `line` gets each line without a line end. `wants_call` selects the calls to print; without it, all calls
+  /// and events are printed.
   explicit RecordText(std::function<void(std::string_view)> line,
                       std::function<bool(std::string_view)> wants_call = {});
 
   void tell(const Record& record);
-  /// What waits for an answer that does not come any more.
+  /// Prints the calls that are still waiting for an answer.
   void finish();
 
  private:
@@ -40,7 +40,7 @@ class RecordText {
   std::function<bool(std::string_view)> wants_call_;
   Decoder decoder_{StreamOrigin::elsewhere, nullptr};
   std::uint64_t thread_ = 0;
-  /// By thread, the words of a call whose answer may follow; its block may be gone by then.
+  /// By thread, copies of the words of a call whose answer may follow, because its block may be gone by then.
   std::map<std::uint64_t, std::vector<std::uint64_t>> waiting_;
 };
 

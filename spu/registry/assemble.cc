@@ -49,7 +49,7 @@ ChainSettings settings_of(std::string_view description) {
   return parse_chain(description);
 }
 
-/// The file of a unit that is built elsewhere; null: the unit is one of `units`, or there is none.
+/// The file of a unit that is built elsewhere; null if the unit is one of `units` or does not exist.
 std::optional<fs::path> plugin_of(const UnitSetting& setting, UnitTable units) {
   if (names_plugin_file(setting.name)) return setting.name;
   if (std::ranges::any_of(units, [&](const UnitDescription* unit) { return setting.name == unit->name; }))
@@ -124,7 +124,7 @@ std::vector<PlannedUnit> plan(const ChainSettings& settings, UnitTable units) {
   return planned;
 }
 
-/// Calls `take` for each option that names a file.
+/// Calls `take` for each setting that names a file.
 template <typename Take>
 void for_each_file(ChainSettings& settings, UnitTable units, const Take& take) {
   for (UnitSetting& unit : settings) {
@@ -152,7 +152,7 @@ std::optional<std::string> assemble(Chain& chain, std::string_view description,
         chain.add(unit.description.make({chain, unit.description, unit.options, session}));
     }
   } catch (const std::exception& error) {
-    // Units before the one that cannot be made count on those behind them.
+    // Units that were already added rely on those after them.
     chain.remove_units();
     return error.what();
   }
@@ -163,7 +163,7 @@ std::string resolved_chain(std::string_view description, const std::filesystem::
   ChainSettings settings = settings_of(description);
   plan(settings, units);
   for_each_file(settings, units, [&](OptionSetting& setting) { setting.value = folder / setting.value; });
-  // The viewer's process may be in another folder, and have other folders of plug-ins.
+  // The viewer's process may have another working folder and other folders of plugins.
   for (UnitSetting& setting : settings) {
     if (const auto file = plugin_of(setting, units)) setting.name = folder / *file;
   }

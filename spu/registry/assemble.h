@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chains from text, as Chromium's configurations made them: "track volume driver". A text that begins with "@"
-// or is the name of a .json file stands for the chain in that file. chain_text.h has the grammar, chain_json.h
-// the file's form.
+// Assembles chains from text, as Chromium does from its configurations: "track volume driver". A text that
+// begins with "@" or is the name of a .json file refers to the chain in that file. chain_text.h has the
+// grammar, chain_json.h the format of the file.
 #pragma once
 
 #include <filesystem>
@@ -17,26 +17,26 @@
 
 namespace understudy::spu {
 
-/// Descriptions that a chain's text may name.
+/// The descriptions that a chain's text may refer to.
 using UnitTable = std::span<const UnitDescription* const>;
 
-/// All units there are, by name.
+/// All units, by name.
 UnitTable unit_table();
 
 /// Adds the units named in `description`, the one nearest to the application first; "driver" stands for the
-/// real OpenGL and must be last. Returns what is wrong with the description, or nothing; a chain with an error
-/// adds no unit.
+/// real OpenGL and must be last. Returns an error in the description, or nothing; after an error the chain has
+/// no units.
 std::optional<std::string> assemble(Chain& chain, std::string_view description,
                                     const std::shared_ptr<RenderSession>& session,
                                     UnitTable units = unit_table());
 
-/// The same chain as text that means the same in every folder: the chain's file is read, and files named in it
-/// are absolute, starting from `folder`. Throws ChainError when `description` is not a chain that can be
-/// assembled.
+/// Returns the chain as text that is independent of the working folder: a chain's file is replaced by its
+/// contents, and the files named in it become absolute, relative to `folder`. Throws ChainError if
+/// `description` is not a chain that can be assembled.
 std::string resolved_chain(std::string_view description, const std::filesystem::path& folder,
                            UnitTable units = unit_table());
 
-/// The files that units of a resolved chain write. Throws ChainError.
+/// Returns the files that the units of a resolved chain write. Throws ChainError.
 std::vector<std::filesystem::path> files_of_units(std::string_view resolved, UnitTable units = unit_table());
 
 }  // namespace understudy::spu

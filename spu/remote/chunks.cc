@@ -12,7 +12,7 @@ using compositor::MalformedMessage;
 
 namespace {
 
-/// A chunk of records ends with the record that makes it as long as this.
+/// A chunk of records ends with the first record that makes it at least this long.
 constexpr std::size_t usual_chunk_words = 256;
 constexpr std::uint64_t known_bit = std::uint64_t(1) << 16;
 
@@ -40,9 +40,9 @@ void ChunkSender::add_chunk(std::span<const std::uint64_t> words) {
     heads_.push_back(found->second | known_bit | std::uint64_t(words.size()) << 32);
     return;
   }
-  // The oldest chunk makes room, however often it was named since.
+  // The oldest chunk is replaced, however often it was referred to since.
   const std::size_t at = next_slot_;
-  // First, since it may throw: the next slot is never beyond the end.
+  // This comes first because it may throw: the next slot must never be beyond the end.
   if (at == slots_.size()) slots_.emplace_back();
   next_slot_ = (next_slot_ + 1) % chunk_slots;
   Slot& slot = slots_[at];
@@ -63,7 +63,7 @@ void ChunkSender::add(std::span<const std::uint64_t> records, std::span<const st
       add_chunk(words.subspan(first, std::min(max_chunk_words, end - first)));
   };
   while (end < records.size()) {
-    // What a record says of its length is its writer's business; here it is only where to cut.
+    // The length in a record is not checked here; it only determines where to cut.
     const std::uint64_t length = std::max<std::uint64_t>(records[end] >> 32, 1);
     if (end > first && end - first + length > max_chunk_words) cut(records);
     end += std::size_t(std::min<std::uint64_t>(length, records.size() - end));

@@ -9,7 +9,7 @@
 namespace understudy::spu {
 namespace {
 
-/// The names by which a fixed-function array is asked about; 0 where there is nothing to ask.
+/// The names that query a fixed-function array; 0 if there is no such query.
 struct ArrayNames {
   GLenum array;
   GLenum size;
@@ -137,7 +137,7 @@ void ClientState::pop() {
   pushed_.pop_back();
 }
 
-/// The gl*Pointer commands; arguments stand in the order of the registry.
+/// Tracks the gl*Pointer commands; arguments are in the order of the registry.
 void ClientState::follow_pointer(CallId call, const std::uint64_t* words) {
   const auto fixed = [&](GLenum array, GLint size, GLenum type, std::uint64_t stride, std::uint64_t pointer) {
     point(client_.fixed[array], size, type, stride, pointer);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What OpenGL keeps for the client's side of it: pixel store, buffer bindings, vertex arrays. It follows from
-// the calls alone, and is what the encoder asks about all the time, so no question of it need travel.
+// OpenGL's client state: pixel store, buffer bindings, vertex arrays. It follows from the calls alone, and the
+// encoder queries it all the time, so these queries need no round trip.
 //
-// Calls that are errors are taken at their word; an application that makes them sees what it said.
+// Calls that are errors are recorded as if they had succeeded; the application reads back what it set.
 #pragma once
 
 #include <array>
@@ -17,34 +17,34 @@
 
 namespace understudy::spu {
 
-/// Who wants to know. The encoder looks for arrays in the application's memory only, which the vertex array
-/// object 0 alone can have; an application may ask more of any of them.
+/// Who makes a query. The encoder looks only for arrays in the application's memory, which only the vertex
+/// array object 0 can have; an application may query more, and of any vertex array object.
 enum class Asker { application, encoder };
 
 class ClientState {
  public:
-  /// A call that is about to be made.
+  /// Records a call that is about to be made.
   void note(CallId call, const std::uint64_t* words);
-  /// Writes the answer where the call's last argument points, or into `result`. False when it is not known
-  /// here.
+  /// Writes the answer to where the call's last argument points, or to `result`. Returns false if it is not
+  /// known here.
   bool answer(CallId call, const std::uint64_t* words, Asker asker, std::uint64_t& result) const;
 
   GLuint bound_buffer(GLenum target) const;
   /// GL_PACK_*.
   const PixelStore& pack() const { return client_.pack; }
 
-  /// Memory that OpenGL writes after the call that named it has returned.
+  /// Memory that OpenGL writes after the return of the call that specified it.
   struct Retained {
     std::uint64_t first = 0;
     std::size_t bytes = 0;
   };
-  /// Of the mode that the last glRenderMode has left.
+  /// The buffer of the mode that the last glRenderMode has left.
   const Retained& feedback() const { return left_mode_ == GL_SELECT ? selection_ : feedback_; }
 
  private:
   struct Array {
     bool enabled = false;
-    bool elsewhere = false;  ///< set in a way that is not followed here, always from a buffer
+    bool elsewhere = false;  ///< set by a call that is not tracked here, always from a buffer
     GLint size = 4;
     GLenum type = GL_FLOAT;
     GLsizei stride = 0;
@@ -55,7 +55,7 @@ class ClientState {
     bool integer = false;
     bool wide = false;  ///< glVertexAttribLPointer
   };
-  /// What glPushClientAttrib keeps, but for names of buffers.
+  /// The state saved by glPushClientAttrib, except for buffer bindings.
   struct Client {
     PixelStore unpack;
     PixelStore pack;
@@ -90,7 +90,7 @@ class ClientState {
 
   Client client_;
   std::vector<Pushed> pushed_;
-  std::map<GLenum, GLuint> buffers_;          ///< by target, but for arrays and elements
+  std::map<GLenum, GLuint> buffers_;          ///< by target, except for arrays and elements
   std::map<GLuint, GLuint> element_buffers_;  ///< by vertex array object
   Retained feedback_;
   Retained selection_;

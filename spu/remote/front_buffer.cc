@@ -11,8 +11,8 @@ namespace {
 enum class Part : std::uint8_t {
   none,
   draws,
-  draws_by_name,  ///< into the framebuffer that the call names
-  follows,        ///< chooses buffers, or has to do with lists, attributes or framebuffer objects
+  draws_by_name,  ///< into the framebuffer that the call specifies
+  follows,        ///< chooses buffers, or concerns lists, attributes or framebuffer objects
 };
 
 constexpr std::size_t attribute_stack_depth = 16;
@@ -94,7 +94,7 @@ ChosenBuffer FrontBuffer::buffer_of(GLenum name) const {
     case GL_NONE:
       return ChosenBuffer::other;
     default:
-      // A singly buffered window has no other one.
+      // A single-buffered window has no other buffer.
       return doubly_buffered_ ? ChosenBuffer::other : ChosenBuffer::front;
   }
 }
@@ -144,7 +144,7 @@ void FrontBuffer::call_list(Calls& calls, GLuint list) const {
 void FrontBuffer::follow(CallId call, const std::uint64_t* words, Calls& calls) const {
   switch (call) {
     case CallId::PushAttrib:
-      // Most drivers refuse what is more than the 16 that OpenGL promises; a program may try every frame.
+      // Most drivers reject more than the 16 levels that OpenGL guarantees; a program may try every frame.
       if (calls.pushed.size() == attribute_stack_depth) return;
       calls.pushed.emplace_back(GLbitfield(words[0]), calls.record.leaves);
       return;
@@ -196,7 +196,7 @@ void FrontBuffer::note(CallId call, const std::uint64_t* words) {
   }
   const auto apply = [&](Calls& calls) {
     if (its == Part::follows) return follow(call, words, calls);
-    // Both kinds of calls that name their framebuffer name what is drawn into as their first or second
+    // Both kinds of calls with an explicit framebuffer have the one that is drawn into as first or second
     // argument.
     const bool blit = call == CallId::BlitNamedFramebuffer;
     const bool window = its == Part::draws ? window_is_bound() : words[blit ? 1 : 0] == 0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether an application has drawn into its window's front buffer, which shows what is in it without a swap. It
-// follows from the calls alone (glDrawBuffer, framebuffer objects, attributes that are pushed, display lists),
-// so applications that draw into the back buffer are neither asked nor slowed.
+// Detects whether an application has drawn into its window's front buffer, whose contents are visible without a
+// swap. This follows from the calls alone (glDrawBuffer, framebuffer objects, pushed attributes, display
+// lists), so applications that draw into the back buffer cause no queries and are not slowed down.
 //
-// Lists that glCallLists names are taken to draw and to choose no buffer.
+// Lists called by glCallLists are assumed to draw and not to choose a buffer.
 #pragma once
 
 #include <cstdint>
@@ -19,22 +19,22 @@ namespace understudy::spu {
 
 class FrontBuffer {
  public:
-  /// `lists` must outlive it.
+  /// `lists` must outlive this object.
   FrontBuffer(bool doubly_buffered, ShareGroup& lists);
 
-  /// A call that is about to be made.
+  /// Records a call that is about to be made.
   void note(CallId call, const std::uint64_t* words);
-  /// Something was drawn into it since shown().
+  /// Whether something was drawn into the front buffer since shown().
   bool is_drawn() const { return calls_.record.draws_front; }
   void shown() { calls_.record.draws_front = false; }
-  /// Whether the call ends drawing into it: what stands for a window may have one buffer, and what is drawn
-  /// into the back afterwards must not be shown.
+  /// Whether the call ends drawing into the front buffer. On the GL server the window may have a single buffer,
+  /// so what is drawn into the back buffer afterwards must not be shown.
   bool is_left_by(CallId call, const std::uint64_t* words) const;
 
  private:
-  /// The application's calls since the context was made, or those that a list holds.
+  /// The effect of the application's calls since the context was created, or of the calls in a list.
   struct Calls {
-    ListRecord record;  ///< where it says `draws`, the buffer was chosen before
+    ListRecord record;  ///< `draws`: into a buffer that was chosen before
     std::vector<std::pair<GLbitfield, ChosenBuffer>> pushed;
   };
 
@@ -45,16 +45,16 @@ class FrontBuffer {
   void bind(GLenum target, GLuint framebuffer);
   bool window_is_bound() const { return framebuffer_ == 0; }
   ChosenBuffer buffer_of(GLenum name) const;
-  /// By a call that names what is drawn into; `as_before` by any other.
+  /// The buffer that a call chooses for drawing; `as_before` for all other calls.
   ChosenBuffer chosen_by(CallId call, const std::uint64_t* words) const;
 
   bool doubly_buffered_;
   ShareGroup* lists_;
-  GLuint framebuffer_ = 0;  ///< that is drawn into
+  GLuint framebuffer_ = 0;  ///< bound for drawing
   Calls calls_;
   Calls open_list_;
-  GLuint open_ = 0;        ///< its name; 0: none
-  bool executes_ = false;  ///< while it is compiled
+  GLuint open_ = 0;        ///< name of the list that is being compiled; 0: none
+  bool executes_ = false;  ///< that list's calls are also executed
 };
 
 }  // namespace understudy::spu

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The window system where the application is, as far as the link needs it.
+// The local window system of the application, as far as the remote unit needs it.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,18 @@ namespace understudy::spu {
 struct FrontDrawable {
   std::uint64_t number = 0;  ///< 0: none
   Extent2D extent;
-  std::uint64_t screen = 0;  ///< where show() finds it, whatever that means to the front end; 0: nobody sees it
+  std::uint64_t screen = 0;  ///< the drawable's screen, in the front end's terms; 0: not visible
 };
 
 class FrontEnd {
  public:
   virtual ~FrontEnd() = default;
-  /// Of the calling thread's context: what the application asked for; number and shares_with are not set.
+  /// The format requested for the calling thread's context; number and shares_with are not set.
   virtual RecordedContext context() = 0;
-  /// The calling thread's.
+  /// The drawable of the calling thread.
   virtual FrontDrawable drawable() = 0;
-  /// Called by a thread of its own, also when the drawable is gone. Rows from the top, 4 bytes a pixel: blue,
-  /// green, red, unused.
+  /// Called on a separate thread, even after the drawable was destroyed. Rows from top to bottom, 4 bytes per
+  /// pixel: blue, green, red, unused.
   virtual void show(const FrontDrawable& drawable, Extent2D extent, std::span<const std::uint8_t> pixels) = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an application and a GL server say to each other: hello_client and acceptance as at the launcher
-// (compositor/service/launcher_protocol.h), then calls, to which the GL server replies where it says so.
+// The messages between an application and a GL server: hello_client and acceptance as with the launcher
+// (compositor/service/launcher_protocol.h), then calls, which the GL server answers if they request a reply.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@ namespace understudy::spu {
 
 enum class GlServerMessage : std::uint16_t {
   calls = 1,  ///< from the application
-  answered,   ///< a reply
-  image,      ///< the other
-  refined,    ///< pixels of an image that came before, as they are: the view rests
+  answered,   ///< a reply of the kind `answer`
+  image,      ///< a reply of the kind `image`
+  refined,    ///< exact pixels of an image that was sent before, once the view rests
   last = refined
 };
 
@@ -30,7 +30,7 @@ constexpr compositor::Protocol protocol_of(GlServerMessage) {
 inline constexpr std::array gl_server_protocols{protocol_of(compositor::LauncherMessage{}),
                                                 protocol_of(GlServerMessage{})};
 
-/// The highest OpenGL versions that the GL server can make contexts of, as 100 * major + 10 * minor; 0: none.
+/// The GL server's highest OpenGL versions, as 100 * major + 10 * minor; 0: none.
 struct GlServerVersions {
   int core = 0;
   int compatibility = 0;
@@ -38,11 +38,11 @@ struct GlServerVersions {
 
 enum class ServerReply : std::uint64_t {
   none,
-  answer,  ///< of the last record: call_answer.h
+  answer,  ///< the answer of the last record: call_answer.h
   image,   ///< the last record is a `frame` or `front_shown` event
 };
 
-/// Before the chunks (chunks.h) that make the records (spu/stream/record.h) of one thread, and their payload.
+/// Precedes the chunks (chunks.h) of the records (spu/stream/record.h) of one thread and their payload.
 struct CallsHead {
   std::uint64_t thread = 0;
   ServerReply reply = ServerReply::none;
@@ -57,11 +57,11 @@ struct Calls {
   std::span<const std::uint64_t> payload;
 };
 
-/// What changed of a drawable's image since the last one: `width` x `height` pixels whose upper left corner
-/// is at x, y from the upper left. Nothing changed where one of them is 0.
+/// The part of a drawable's image that has changed since the last image: `width` x `height` pixels whose upper
+/// left corner is at x, y from the upper left. If one of them is 0, nothing has changed.
 struct ImageChange {
-  std::uint64_t drawable = 0;  ///< as the application's calls number it
-  Extent2D extent;             ///< of the drawable
+  std::uint64_t drawable = 0;  ///< its number in the application's calls
+  Extent2D extent;             ///< of the whole drawable
   int x = 0;
   int y = 0;
   int width = 0;
@@ -70,17 +70,17 @@ struct ImageChange {
 };
 
 std::vector<std::byte> encode(const GlServerVersions& versions);
-/// The message is this, then the pixels.
+/// A message consists of this head and the pixels.
 std::vector<std::byte> encode_head(const ImageChange& change);
 constexpr std::size_t image_head_bytes = 7 * sizeof(std::uint64_t);
 
 // All of these throw compositor::MalformedMessage.
 GlServerVersions decode_versions(std::span<const std::byte> payload);
-/// `payload` must be aligned for words; what comes back lies in `chunks`, until the next message.
+/// `payload` must be aligned for words. The result refers to memory of `chunks`, valid until the next message.
 Calls decode_calls(std::span<const std::byte> payload, ChunkReceiver& chunks);
-/// Without pixels; `payload` may go on behind the head.
+/// Decodes all but the pixels; `payload` may continue after the head.
 ImageChange decode_image_head(std::span<const std::byte> payload);
-/// What comes back leads into `payload`.
+/// The result refers to memory of `payload`.
 ImageChange decode_image(std::span<const std::byte> payload);
 
 }  // namespace understudy::spu

@@ -17,7 +17,7 @@ using compositor::Message;
 
 namespace {
 
-/// Smaller parts are not worth a JPEG's tables.
+/// For smaller parts the overhead of a JPEG's tables is too large.
 constexpr int least_jpeg_pixels = 4096;
 constexpr std::size_t pixel_bytes = 4;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Relays between viewers and GL servers (compositor/transport/tcp/relay.h). What they add is JPEG: with a
-// quality in the client's request, images travel as JPEG while frames follow each other, and what was lost of
-// them comes as it is once the view rests: with a frame that changes nothing, or when there was none for
-// rest_after.
+// Relays between viewers and GL servers (compositor/transport/tcp/relay.h), which add JPEG compression: if the
+// client's request contains a quality, images are sent as JPEG while frames follow each other. Once the view
+// rests, the lossy pixels are sent again exactly: with a frame that changes nothing, or when there was no frame
+// for rest_after.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,7 @@ namespace understudy::spu {
 
 constexpr std::chrono::milliseconds rest_after{150};
 
-/// Beside the viewer.
+/// Runs beside the viewer.
 class ViewerRelay : public compositor::Relay {
  public:
   using Relay::Relay;
@@ -26,7 +26,7 @@ class ViewerRelay : public compositor::Relay {
   void carry_back(compositor::Message message) override;
 };
 
-/// Beside the GL server.
+/// Runs beside the GL server.
 class GlServerRelay : public compositor::Relay {
  public:
   GlServerRelay(compositor::Connection& here, compositor::TcpConnection& tcp,
@@ -47,11 +47,11 @@ class GlServerRelay : public compositor::Relay {
     int bottom = 0;
     bool empty() const { return left >= right || top >= bottom; }
   };
-  /// What a drawable shows, to the last bit.
+  /// The exact pixels that a drawable shows.
   struct Shown {
     Extent2D extent;
     std::vector<std::byte> pixels;
-    Part lossy;  ///< what the viewer has of it is a JPEG
+    Part lossy;  ///< the part that the viewer has received as JPEG
   };
 
   void keep(Shown& shown, const ImageChange& change) const;

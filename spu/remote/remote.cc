@@ -17,16 +17,16 @@
 namespace understudy::spu {
 namespace {
 
-/// Most that is believed of an answer whose extent nobody knows.
+/// Limit for an answer whose extent is unknown.
 constexpr std::size_t most_unknown_bytes = std::size_t(64) * 1024;
-/// That are asked for at once; contexts have some hundreds.
+/// Limit for the extensions queried at once; contexts have some hundreds.
 constexpr GLint most_extensions = 4096;
 
 std::byte* memory_at(std::uint64_t word) {
   return reinterpret_cast<std::byte*>(static_cast<std::uintptr_t>(word));
 }
 
-/// The result, or memory of the caller, must be there before the application goes on.
+/// Whether the call's result or output must be available before the application continues.
 bool answers(CallId call) {
   static const std::vector<bool> all = [] {
     std::vector<bool> table(call_count);
@@ -43,7 +43,7 @@ bool answers(CallId call) {
   return all[std::size_t(call)];
 }
 
-/// What a context answers in the same way for ever.
+/// Whether the query always returns the same value in a context.
 bool is_constant(CallId call, const std::uint64_t* words) {
   switch (call) {
     case CallId::GetIntegerv:
@@ -131,7 +131,7 @@ void Remote::left() {
   server_.send(records);
 }
 
-/// Windows change their size without a call. Applications that notice set a viewport, others draw the next
+/// Windows change their size without a call. Applications that notice it set a viewport; others draw the next
 /// frame.
 void Remote::note_drawable(Records& to) {
   const FrontDrawable now = server_.front().drawable();
@@ -154,14 +154,14 @@ void Remote::show_frame() {
   server_.send(records);
 }
 
-/// Nobody sees what is drawn off the screen.
+/// An off-screen surface has nothing to show.
 bool Remote::has_front_to_show() {
   if (drawable_.number == 0 || drawable_.screen == 0) return false;
   return front_.is_drawn() || (front_pending_ && server_.is_front_pending(drawable_));
 }
 
-/// An application may flush after each triangle: it need not wait until each of them is seen. False when the
-/// image is pending.
+/// An application may flush after each triangle, and must not wait until each of them is visible. Returns false
+/// if the image is pending.
 bool Remote::show_front() {
   pack_.hand_on();
   front_pending_ = !server_.show_front(drawable_);
@@ -179,7 +179,7 @@ void Remote::show_front_now() {
 void Remote::frame_ended(FrameEnd kind) {
   if (kind == FrameEnd::swap && drawable_.number != 0) show_frame();
   if (kind == FrameEnd::wait && has_front_to_show()) show_front_now();
-  // What the application then does to its windows by other means comes after its frames.
+  // Whatever the application then does to its windows by other means must come after its frames.
   if (kind == FrameEnd::wait) {
     pack_.hand_on();
     server_.wait_for_frames();
@@ -220,7 +220,7 @@ std::optional<std::uint64_t> Remote::known(CallId call, const std::uint64_t* wor
     return 0;
   }
   if (is_integer_query(call) && GLenum(words[0]) == GL_DOUBLEBUFFER && words[1] != 0) {
-    // What stands for a window on the GL server may have one buffer.
+    // On the GL server the window may have a single buffer.
     if (call == CallId::GetIntegerv) *reinterpret_cast<GLint*>(memory_at(words[1])) = context_.double_buffered;
     if (call == CallId::GetBooleanv)
       *reinterpret_cast<GLboolean*>(memory_at(words[1])) = context_.double_buffered;
@@ -232,7 +232,7 @@ std::optional<std::uint64_t> Remote::known(CallId call, const std::uint64_t* wor
   return constant(call, words);
 }
 
-/// Applications ask for one after the other, which took seconds over a line with a delay.
+/// Applications query one extension after another, which would take seconds over a connection with latency.
 void Remote::fetch_extensions() {
   if (std::exchange(extensions_fetched_, true)) return;
   GLint count = 0;
@@ -253,7 +253,7 @@ void Remote::fetch_extensions() {
 
 std::uint64_t Remote::ask(CallId call, const std::uint64_t* words) {
   if (call == CallId::ClientActiveTexture) {
-    // The encoder looks at the arrays of one unit after the other, and sets back what was set.
+    // The encoder queries the arrays of one texture unit after another, and restores the active unit.
     state_.note(call, words);
     return 0;
   }
@@ -287,7 +287,7 @@ void Remote::before(CallId call, const std::uint64_t* words, Records& to) {
   front_.note(call, words);
 }
 
-/// What ends a mapping.
+/// Drops the mappings that the call ends.
 void Remote::drop_mappings(CallId call, const std::uint64_t* words) {
   switch (call) {
     case CallId::DeleteBuffers:
@@ -342,7 +342,7 @@ std::uint64_t Remote::apply(const PackedCall& call, const CallAnswer& answer) {
         write_output(call, output);
     }
   }
-  // Addresses of the GL server mean nothing here.
+  // Addresses in the GL server's process are meaningless here.
   if (call_shape(call.call).result_pointer != 0 && answer.outputs.empty()) return 0;
   if (call.call == CallId::GetError) without_error_ = result == GL_NO_ERROR;
   return result;
@@ -379,7 +379,7 @@ std::uint64_t Remote::keep_text(const PackedCall& call, const AnsweredOutput& ou
 }
 
 std::uint64_t Remote::map(const PackedCall& call, std::uint64_t bytes, const AnsweredOutput& contents) {
-  // The GL server has mapped what it claims, so this is no more than the application's buffer.
+  // The GL server has mapped this many bytes, so they are at most the size of the application's buffer.
   const std::uint8_t length = argument_named(call_shape(call.call), "length");
   if (length != no_argument) bytes = std::max(bytes, call.words[length]);
   auto& memory = mappings_[mapped_buffer(call.call, call.words)];
@@ -387,7 +387,7 @@ std::uint64_t Remote::map(const PackedCall& call, std::uint64_t bytes, const Ans
   if (!contents.bytes.empty())
     std::memcpy(memory.data(), contents.bytes.data(), std::min<std::size_t>(bytes, contents.bytes.size()));
   const std::uint64_t first = reinterpret_cast<std::uintptr_t>(memory.data());
-  // Tells by which address the writes that follow will speak of the mapping.
+  // Sends the address by which the following writes will refer to the mapping.
   const std::uint64_t words[] = {stable_id(call.call), first};
   Records records;
   records.append_plain(event::answers, words);

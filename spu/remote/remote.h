@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The remote unit: what pack has packed is made by a GL server, in another process and perhaps on another
-// machine, and what it answers comes back (Humphreys et al. 2002; Chromium's pack and network units).
+// The remote unit: packed calls are made by a GL server, in another process and perhaps on another machine, and
+// their answers come back (Humphreys et al. 2002; Chromium's pack and network units).
 //
-// Its chain stands on remote_driver(), by which the encoder's own questions go the same way.
+// Below the chain is remote_driver(), which sends the encoder's own queries the same way.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ namespace understudy::spu {
 
 class Pack;
 
-/// For Chain: every command, asked of the current chain's link; nothing happens where there is none.
+/// The driver table for a Chain: sends every command to the current chain's remote unit, if there is one.
 const DispatchTable& remote_driver();
 
 class Remote final : public Unit, public RecordTaker {
@@ -47,11 +47,11 @@ class Remote final : public Unit, public RecordTaker {
   bool in_this_process() const override { return false; }
   std::uint64_t take(const Records& records, const PackedCall* last) override;
 
-  /// A question of the encoder.
+  /// Makes a query of the encoder.
   std::uint64_t ask(CallId call, const std::uint64_t* words);
 
  private:
-  using Value = std::pair<CallId, std::uint64_t>;  ///< a query, and the words that it asks with
+  using Value = std::pair<CallId, std::uint64_t>;  ///< a query, and its argument words
 
   void introduce();
   void tell_current(Records& to);
@@ -77,7 +77,7 @@ class Remote final : public Unit, public RecordTaker {
   ClientState state_;
   FrontBuffer front_;
   MappedBuffers writes_;
-  std::map<GLuint, std::vector<std::max_align_t>> mappings_;  ///< by buffer: what the application sees of it
+  std::map<GLuint, std::vector<std::max_align_t>> mappings_;  ///< by buffer: the application's memory
   std::map<Value, std::vector<std::byte>> constants_;
   std::map<Value, const char*> texts_;
   RecordedContext context_;
@@ -86,7 +86,7 @@ class Remote final : public Unit, public RecordTaker {
   bool introduced_ = false;
   bool extensions_fetched_ = false;
   bool front_pending_ = false;  ///< an image of the front buffer may still be pending
-  bool without_error_ = false;  ///< glGetError said so, and nothing was called since
+  bool without_error_ = false;  ///< glGetError has returned GL_NO_ERROR, and no call followed
 };
 
 extern const UnitDescription remote_description;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Apart from the unit, because of how its functions are compiled (cmake/forwarding_sources.cmake).
+// Separate from the unit, because its functions are compiled differently (cmake/forwarding_sources.cmake).
 #include "dispatch/call_words.h"
 #include "spu/chain.h"
 #include "spu/remote/remote.h"

@@ -70,7 +70,7 @@ ServerConnection::ServerConnection(const std::string& address, FrontEnd& front) 
   receiver_ = start(&ServerConnection::receive_all);
 }
 
-/// The application's signals are for its own threads.
+/// Starts a thread with all signals blocked, because the application's signals are for its own threads.
 std::thread ServerConnection::start(void (ServerConnection::*work)()) {
   sigset_t all;
   sigset_t before;
@@ -97,7 +97,7 @@ ServerConnection::~ServerConnection() {
 
 void ServerConnection::end() {
   ending_ = true;
-  // Other threads may go on.
+  // Other threads may continue to send frames.
   const std::uint64_t last = frames_sent_;
   const compositor::Deadline until = Clock::now() + last_frames_patience;
   while (frames_shown_ < last && !lost_ && Clock::now() < until)
@@ -108,7 +108,7 @@ void ServerConnection::end() {
 
 void ServerConnection::lose(std::string_view why) {
   std::call_once(losing_, [&] {
-    // Said before anybody goes on without the GL server, as that may be to the end of the program.
+    // Logged before any thread continues without the GL server, since that may end the program.
     if (!ending_)
       fmt::print(
           stderr,
@@ -145,7 +145,7 @@ void ServerConnection::transmit(const Records& records, ServerReply reply, std::
   for (const compositor::Bytes& part : parts) counters().bytes_up += part.size();
 }
 
-/// Returns when `condition` holds or the GL server is lost. Needs the lock of the replies.
+/// Returns when `condition` holds or the GL server is lost. Requires the lock of the replies.
 template <class Condition>
 void ServerConnection::wait_until(std::unique_lock<std::mutex>& lock, Condition condition) {
   const auto holds = [&] { return lost_ || condition(); };
@@ -195,7 +195,7 @@ void ServerConnection::take_image(const Message& message) {
     if (frames_.empty()) throw MalformedMessage("sent an image that nobody waits for");
     drawable = frames_.front();
   }
-  // Of a window that is gone, or of a frame that could not be made, there is nothing to show.
+  // There is nothing to show of a window that no longer exists, or of a frame that could not be made.
   if (change.extent.width > 0 && change.extent.height > 0) {
     Shown& shown = images_[drawable.number];
     shown.drawable = drawable;
@@ -217,7 +217,7 @@ void ServerConnection::take_image(const Message& message) {
 void ServerConnection::refine_image(const Message& message) {
   const ImageChange change = decode_image(message.payload);
   const auto shown = images_.find(change.drawable);
-  // Nobody has asked for it: it may be of an image that is gone.
+  // A refined image is not requested, and may belong to an image that no longer exists.
   if (shown != images_.end() && shown->second.extent == change.extent) put(shown->second, change);
 }
 
@@ -304,8 +304,8 @@ bool ServerConnection::is_front_pending(const FrontDrawable& drawable) {
   return pending_.contains(drawable.number);
 }
 
-/// What an application has flushed is seen although the application says no more. The GL server has then what
-/// was sent, which is what was drawn before the last flush or little more.
+/// What an application has flushed becomes visible even if it makes no further calls. The GL server then has
+/// what was sent so far: the drawing before the last flush, or little more.
 void ServerConnection::show_pending() {
   const auto can_show = [&] { return !pending_.empty() && frames_.empty(); };
   for (;;) {
@@ -314,7 +314,7 @@ void ServerConnection::show_pending() {
       replied_.wait(lock, [&] { return lost_ || can_show(); });
       if (lost_) return;
     }
-    // Another thread may hold this one for as long as it waits for an answer.
+    // Another thread may hold this lock for as long as it waits for an answer.
     const std::scoped_lock sending(sending_);
     PendingFront pending;
     {

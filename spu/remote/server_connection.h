@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The process's one connection to the GL server that makes its OpenGL calls. All threads use it, one at a time;
-// what comes back is received by a thread of the connection's own, so that images are shown as they come.
+// The process's only connection to the GL server that makes its OpenGL calls. All threads use it, one at a
+// time; replies are received by a separate thread, so that images are shown as they arrive.
 //
-// A connection that is lost is lost for good: that is said once, and whatever is asked from then on is answered
-// with nothing.
+// A lost connection stays lost: that is logged once, and all later queries are answered with nothing.
 #pragma once
 
 #include <atomic>
@@ -29,15 +28,15 @@
 
 namespace understudy::spu {
 
-/// That are on their way at once: the application draws the next one while the GL server is at the last.
+/// Limit for frames in transit: the application draws the next frame while the GL server works on the last.
 constexpr std::size_t frames_in_flight = 2;
-/// For the last ones of a program that ends.
+/// How long the last frames of an ending program are waited for.
 constexpr std::chrono::milliseconds last_frames_patience{1'000};
 
 class ServerConnection {
  public:
-  /// Connects to the Unix socket `address`. Throws std::runtime_error with what to do when no GL server answers
-  /// there. `front` must outlive the connection.
+  /// Connects to the Unix socket `address`. If no GL server answers there, throws std::runtime_error with
+  /// advice to the user. `front` must outlive the connection.
   ServerConnection(const std::string& address, FrontEnd& front);
   ~ServerConnection();
   ServerConnection(const ServerConnection&) = delete;
@@ -47,34 +46,33 @@ class ServerConnection {
   FrontEnd& front() { return front_; }
   bool lost() const { return lost_; }
 
-  /// Sends what the calling thread's context does.
+  /// Sends records of the calling thread's context.
   void send(const Records& records);
-  /// And waits for what the last record answers; nothing when the GL server is lost. All frames before are
-  /// shown then.
+  /// Sends records and waits for the answer of the last one; nothing if the GL server is lost. All earlier
+  /// frames have been shown on return.
   std::optional<CallAnswer> ask(const Records& records);
-  /// The same for several questions, all of which are on their way at once: answers in their order, or none
-  /// when the GL server is lost.
+  /// The same for several queries that are in transit at the same time: returns the answers in order, or none
+  /// if the GL server is lost.
   std::vector<CallAnswer> ask_all(std::span<const Records> questions);
-  /// The records end with a `frame` event, whose image will be shown in `drawable`. Waits while too many
-  /// frames are on their way.
+  /// Sends records that end with a `frame` event, whose image will be shown in `drawable`. Waits while too many
+  /// frames are in transit.
   void show_frame(const Records& records, const FrontDrawable& drawable);
-  /// What is in its front buffer will be shown in `drawable`. Never waits: while frames are on their way it is
-  /// pending, and asked for when they have come. False when it is pending.
+  /// Requests that the contents of the front buffer are shown in `drawable`. Never waits: while frames are in
+  /// transit the request is pending, and is sent after they have arrived. Returns false if it is pending.
   bool show_front(const FrontDrawable& drawable);
   /// The same, but waits while too many frames are on their way.
   void show_front_now(const FrontDrawable& drawable);
-  /// Whether the drawable's front buffer was to be shown and is not on its way yet. A frame that is shown ends
-  /// that.
+  /// Whether a request to show the drawable's front buffer is pending. A frame of the drawable replaces it.
   bool is_front_pending(const FrontDrawable& drawable);
   /// Waits until all frames are shown.
   void wait_for_frames();
 
-  /// The same text at an address that stays for ever, as applications expect of glGetString.
+  /// Returns the same text at an address that stays valid forever, as applications expect of glGetString.
   const char* keep_text(const std::string& text);
 
-  /// The program is ending: frames on their way are still shown if they come within
-  /// last_frames_patience, then nothing is waited for, or said, any more. May be called from a signal
-  /// handler that calls exit(), whatever the thread is in the midst of.
+  /// The program is ending: frames in transit are still shown if they arrive within last_frames_patience; after
+  /// that, nothing is waited for or logged. May be called in a signal handler that calls exit(), whatever the
+  /// thread was doing.
   void end();
 
  private:
@@ -85,7 +83,7 @@ class ServerConnection {
   };
 
   struct PendingFront {
-    std::uint64_t thread = 0;  ///< whose context has the drawable
+    std::uint64_t thread = 0;  ///< the thread whose context has the drawable
     FrontDrawable drawable;
   };
 
@@ -106,26 +104,26 @@ class ServerConnection {
   GlServerVersions versions_;
   std::atomic<bool> lost_ = false;
   std::once_flag losing_;
-  std::atomic<bool> ending_ = false;  ///< nothing is said any more
-  std::atomic<bool> ended_ = false;   ///< nor shown
+  std::atomic<bool> ending_ = false;  ///< log nothing any more
+  std::atomic<bool> ended_ = false;   ///< show nothing any more
 
-  std::mutex sending_;  ///< held from a question to its answer
+  std::mutex sending_;  ///< held from a query to its answer
   ChunkSender chunks_;
   std::set<std::string> texts_;
 
   std::mutex replies_;
   std::condition_variable replied_;
   std::vector<CallAnswer> answers_;
-  std::size_t awaited_ = 0;                        ///< answers to questions on their way
-  std::deque<FrontDrawable> frames_;               ///< on their way, the oldest first
+  std::size_t awaited_ = 0;                        ///< answers to queries in transit
+  std::deque<FrontDrawable> frames_;               ///< in transit, oldest first
   std::map<std::uint64_t, PendingFront> pending_;  ///< by drawable
-  // For who may not wait for a lock.
+  // Atomic for end(), which must not wait for a lock.
   std::atomic<std::uint64_t> frames_sent_ = 0;
   std::atomic<std::uint64_t> frames_shown_ = 0;
 
-  std::map<std::uint64_t, Shown> images_;  ///< by drawable; the receiving thread's
+  std::map<std::uint64_t, Shown> images_;  ///< by drawable; used by the receiving thread only
   std::thread receiver_;
-  std::thread pending_shower_;  ///< started when something is pending
+  std::thread pending_shower_;  ///< started when a request is pending
 };
 
 }  // namespace understudy::spu

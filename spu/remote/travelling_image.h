@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A GL server's image on its way over TCP: how its pixels are written, and then the message as the GL server
-// made it, its pixels perhaps as a JPEG image.
+// An image of a GL server on its way over TCP: the coding of its pixels, followed by the GL server's message,
+// in which the pixels may be replaced by a JPEG image.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace understudy::spu {
 
 enum class PixelCoding : std::uint64_t { plain, jpeg, last = jpeg };
 
-/// The message as a GL server makes it. Throws compositor::MalformedMessage.
+/// Restores the message of the GL server. Throws compositor::MalformedMessage.
 std::vector<std::byte> decode_travelling_image(std::span<const std::byte> payload);
 
 }  // namespace understudy::spu

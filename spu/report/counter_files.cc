@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The counters that the processes of a run left in the launcher's folder.
+// Reads the counters that the processes of a run left in the launcher's folder.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>

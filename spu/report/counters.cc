@@ -22,10 +22,10 @@
 namespace understudy::spu {
 namespace {
 
-// The counters live at one address for ever: in the program's zero pages, over which the launcher's file is
-// mapped. Pointers to them that threads hold stay right whether there is a file or not, and in a child after
-// fork.
-constexpr std::size_t page = 65536;  // the largest page size of the systems we know
+// The counters have one address for the life of the process: in the program's zero pages, over which the
+// launcher's file is mapped. Threads' pointers to them stay valid with or without a file, and in a forked
+// child.
+constexpr std::size_t page = 65536;  // the largest page size of known systems
 constexpr std::size_t whole_pages = (sizeof(ProcessCounters) + page - 1) / page * page;
 alignas(page) constinit std::array<std::byte, whole_pages> memory{};
 
@@ -47,8 +47,8 @@ void map_file_of_this_process() {
   if (length < 0 || static_cast<std::size_t>(length) >= path.size()) return;
   const int file = open(path.data(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (file < 0) return say_that_figures_are_lost(path.data(), errno);
-  // The space is claimed now: a full disk must cost the figures, not a SIGBUS in the viewer. Where this fails
-  // the zero pages stay, the counting goes on in private, and the empty file tells the launcher.
+  // The space is allocated now, so that a full disk only loses the figures instead of raising SIGBUS in the
+  // viewer. If this fails, the zero pages stay as private counters, and the empty file informs the launcher.
   if (const int reason = posix_fallocate(file, 0, static_cast<off_t>(whole_pages)); reason != 0) {
     say_that_figures_are_lost(path.data(), reason);
     if (ftruncate(file, 0) != 0) unlink(path.data());
@@ -68,8 +68,8 @@ void introduce_this_process() {
   std::memcpy(counters.program, program.data(), program.size());
 }
 
-/// A child counts for itself, at the same address: its parent's pages are shared and must not see the child's
-/// calls.
+/// A child has its own counters at the same address: its parent's pages are shared and must not count the
+/// child's calls.
 void start_anew_after_fork() {
   (void)mmap(memory.data(), whole_pages, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1,
              0);
@@ -107,7 +107,7 @@ void add(volume::FrameCounts& total, const volume::FrameCounts& frame) {
   add(total.composite_ms, frame.composite_ms);
 }
 
-/// The last slot takes all reasons for which there is no other.
+/// The last slot takes all reasons that have no slot of their own.
 void add_reason(std::span<ReasonCount> slots, std::string_view reason, std::uint64_t times) {
   const std::string_view known = reason.substr(0, sizeof ReasonCount::reason - 1);
   ReasonCount& last = slots.back();
@@ -120,7 +120,7 @@ void add_reason(std::span<ReasonCount> slots, std::string_view reason, std::uint
   }
 }
 
-/// Moves the figures of a volume that is gone into the last place, and leaves its own as new.
+/// Adds the figures of a volume that no longer exists to those of `last`, and resets its own.
 void hand_on(VolumeCounters& volume, VolumeCounters& last) {
   last.draws_substituted.fetch_add(volume.draws_substituted.exchange(0));
   last.draws_left.fetch_add(volume.draws_left.exchange(0));
@@ -182,7 +182,7 @@ VolumeCounters& count_as_one(std::span<VolumeCounters* const> parts) {
   for (VolumeCounters* const part : parts) {
     if (part == &whole || part->place == VolumePlace::given_up) continue;
     process.volumes_merged.fetch_add(1);
-    if (part == &last) continue;  // others may be in it
+    if (part == &last) continue;  // other volumes may share it
     hand_on(*part, whole);
     part->place = VolumePlace::given_up;
   }
@@ -208,7 +208,7 @@ void count_reason(VolumeCounters& volume, std::string_view reason, std::uint64_t
 }
 
 void count_done(Optimization optimization, std::string_view reason) {
-  static constinit std::mutex mutex;  // contexts of several threads count at once
+  static constinit std::mutex mutex;  // several threads' contexts may count at once
   const std::scoped_lock lock(mutex);
   add_reason(process_counters().done_because[std::size_t(optimization)], reason, 1);
 }

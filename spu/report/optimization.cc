@@ -7,7 +7,7 @@
 namespace understudy::spu {
 namespace {
 
-/// What other orders of composition, the end of rays and rounding may change, in units of the brightest colour.
+/// Largest effect of another compositing order, early ray termination and rounding; the brightest colour is 1.
 constexpr double of_other_sums = 4e-6, of_ended_rays = 5e-6, of_rounding = 1e-6;
 
 constexpr std::array<OptimizationText, optimization_count> table{{

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is left out of frames because it cannot change the image, by name: the report counts each, and
-// `--disable-optimization` has each done nevertheless, to see what it is worth and that the image stays.
+// The names of the optimizations, which skip work that cannot change the image. The report counts what each
+// skips, and `--disable-optimization` disables them, to measure what an optimization gains and to check that
+// the image is the same.
 #pragma once
 
 #include <bitset>
@@ -28,9 +29,9 @@ constexpr std::size_t optimization_count = 9;
 
 struct OptimizationText {
   const char* name;
-  const char* unit;  ///< of what is counted, plural
-  const char* what;  ///< is left out
-  double tolerance;  ///< how far the image, its brightest colour 1, may be off: 0 is bit for bit
+  const char* unit;  ///< what is counted, in the plural
+  const char* what;  ///< describes the skipped work
+  double tolerance;  ///< largest difference of the image, relative to its brightest colour: 0 is exact
 };
 
 /// In the order of Optimization.
@@ -39,10 +40,10 @@ const OptimizationText& text_of(Optimization optimization);
 
 using OptimizationSet = std::bitset<optimization_count>;
 
-/// Names with commas between, or "all", or "none"; nothing where a name is unknown.
+/// Parses comma-separated names, "all" or "none"; returns nothing if a name is unknown.
 std::optional<OptimizationSet> optimizations_in(std::string_view names);
 
-/// All names, with commas between.
+/// All names, separated by commas.
 std::string optimization_names();
 
 }  // namespace understudy::spu

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Those that are volumes still: bricks that have become one with others are not.
+/// The volumes without those that were merged into others.
 std::vector<const VolumeCounters*> volumes_of(const ProcessCounters& process) {
   const auto count = std::min<std::uint32_t>(process.volumes.load(), max_counted_volumes);
   std::vector<const VolumeCounters*> result;
@@ -30,7 +30,7 @@ std::vector<const VolumeCounters*> volumes_of(const ProcessCounters& process) {
   return result;
 }
 
-/// Oldest first; the ring holds the last max_frame_records frames.
+/// Visits the frames in the ring, which holds the last max_frame_records, oldest first.
 template <typename Visit>
 void for_each_kept_frame(const ProcessCounters& process, Visit visit) {
   const std::uint64_t frames = process.frames.load();
@@ -146,13 +146,13 @@ struct Totals {
   std::uint64_t images_behind = 0;
   std::uint64_t windows_asked = 0;
   std::size_t volumes = 0;
-  std::uint64_t draws_substituted = 0;  ///< of all volumes, in frames that ended and in those that did not
+  std::uint64_t draws_substituted = 0;  ///< of all volumes, including frames that did not end
   std::uint64_t draws_left = 0;
   volume::FrameCounts counts;
   Amounts amounts{};
   std::array<ReasonCounts, optimization_count> done_because;
   ReasonCounts reasons;
-  std::vector<std::string> budgets;  ///< of each volume that has one
+  std::vector<std::string> budgets;  ///< one line for each volume with a budget
 };
 
 Totals totals_of(Processes processes) {
@@ -208,7 +208,7 @@ std::uint64_t frames_from_a_gl_server(Processes processes) {
   return frames;
 }
 
-/// A GL server of this run is one of its processes, and counts the calls that it plays.
+/// Whether the processes include a GL server, which counts the calls that it plays.
 bool has_a_gl_server(Processes processes) {
   return std::any_of(processes.begin(), processes.end(), [](const ProcessCounters* process) {
     return process->remote.is.load() == 0 && calls_of(*process) > 0;
@@ -252,7 +252,7 @@ Json server_connection(Processes processes) {
             {report_key::bytes_down, a_frame(down)}}}};
 }
 
-/// Of the first GL server that has drawn in tiles.
+/// The tiles of the first GL server that has drawn in tiles.
 Json tiles(Processes processes) {
   const auto found = std::find_if(processes.begin(), processes.end(), [](const ProcessCounters* process) {
     return process->tiles.count > 0 || process->tiles.given_up[0] != 0;
@@ -268,7 +268,7 @@ std::string counted(std::uint64_t count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-/// What of the windows was never shown, behind the summary; empty where nothing is missing.
+/// Appended to the summary: frames that were never shown; empty if none is missing.
 std::string loss(Processes processes) {
   if (!lost_server(processes)) return {};
   return fmt::format("; the GL server was lost: {} not shown", counted(frames_lost(processes), "frame"));
@@ -283,7 +283,7 @@ std::string listed(const ReasonCounts& reasons) {
   return list;
 }
 
-/// Empty where the volume was left before its texture was looked at.
+/// Empty if the volume was refused before its texture was inspected.
 std::string extent_and_format(const VolumeCounters& volume) {
   if (volume.size[0] == 0) return {};
   return fmt::format(", {} x {} x {} {}", volume.size[0], volume.size[1], volume.size[2],
@@ -333,7 +333,7 @@ std::string report_json(Processes processes) {
       report[report_key::frames_detail].push_back(detail_of(number, process->pid, frame));
     });
   }
-  // Names come from other programs' memory: bytes that are no UTF-8 are replaced, never thrown at.
+  // Names come from other programs' memory: invalid UTF-8 is replaced instead of causing an exception.
   return report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -349,7 +349,7 @@ std::string summary_line(Processes processes) {
   const std::uint64_t draws = totals.draws_substituted + totals.draws_left;
   const bool shown = totals.frames > 0 || draws == 0;
   const std::uint64_t substituted = shown ? totals.frames_substituted : totals.draws_substituted;
-  // Who draws is known once somebody did.
+  // It is known who draws once something was drawn.
   std::string where;
   if (totals.nodes > 0) {
     where = fmt::format(" ({})", counted(static_cast<std::uint64_t>(totals.nodes), "node"));

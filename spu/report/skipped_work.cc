@@ -23,7 +23,7 @@ std::string listed_reasons(const ReasonCounts& reasons) {
   return list;
 }
 
-/// Why what an item could have spared was done.
+/// Why work was done that the optimization could have skipped.
 std::string why(Optimization optimization, const volume::FrameCounts& counts, const ReasonCounts& reasons) {
   switch (optimization) {
     case Optimization::empty_bricks:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What frames left out and what they did beside it, in figures and in words.
+// The work that frames skipped, and the work that was done nevertheless, in figures and in words.
 #pragma once
 
 #include <array>
@@ -13,16 +13,17 @@
 
 namespace understudy::spu {
 
-/// What the viewer's process counted, and what the nodes did.
+/// Combines what the viewer's process counted with what the nodes counted.
 Amounts amounts_of(const Amounts& in_process, const volume::FrameCounts& counts);
 
-/// What one frame left out: "61 % of 9300000 samples (empty-bricks 52 %, hidden-samples 9 %), the image".
+/// The work that one frame skipped: "61 % of 9300000 samples (empty-bricks 52 %, hidden-samples 9 %), the
+/// image".
 std::string sentence_of(const FrameRecord& frame);
 
 using ReasonCounts = std::map<std::string, std::uint64_t>;
 
-/// A line an optimization: what was left out, what was not, and why; then what is not looked for at all.
-/// `done_because` by optimization.
+/// One line per optimization: what was skipped, what was not, and why; then the work that is never skipped.
+/// `done_because` is indexed by optimization.
 std::vector<std::string> lines_about(const Amounts& in_process, const volume::FrameCounts& counts,
                                      const std::array<ReasonCounts, optimization_count>& done_because);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the report, the summary and the explanation say of one volume.
+// What the report, the summary and the explanation contain about one volume.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct BudgetCounters;
 struct ReasonCount;
 struct VolumeCounters;
 
-/// A fixed field that a dying process may have left without its closing zero.
+/// Reads a fixed field whose closing zero a dying process may not have written.
 template <std::size_t size>
 std::string text_in(const char (&field)[size]) {
   return {field, strnlen(field, size)};
@@ -28,13 +28,13 @@ ReasonCounts reasons_of(const VolumeCounters& volume);
 
 nlohmann::ordered_json report_of(const VolumeCounters& volume, std::int32_t pid);
 
-/// Of all frames that were compared.
+/// Over all verified frames.
 double verified_rms(const VolumeCounters& volume);
 
 bool has_budget(const BudgetCounters& budget);
-/// Null where there is none.
+/// Null without a budget.
 nlohmann::ordered_json report_of(const BudgetCounters& budget);
-/// "error asked 0.0020, measured 0.0013", and how, or why not.
+/// "error asked 0.0020, measured 0.0013", with the setting, or why the budget is not kept.
 std::string sentence_of(const BudgetCounters& budget);
 
 }  // namespace understudy::spu

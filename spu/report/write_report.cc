@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reports on their way into files.
+// Writes reports to files.
 #include <fmt/format.h>
 #include <sys/random.h>
 
@@ -21,7 +21,7 @@ void replace_file(const std::filesystem::path& path, const std::string& text) {
     throw std::runtime_error(
         fmt::format("cannot {} the report {}: {}", what, path.string(), std::strerror(errno)));
   };
-  // A report may be wanted where others can write: a name that they cannot guess, and no connection of theirs.
+  // The folder may be writable by others: the name cannot be guessed, and no existing file or link is opened.
   std::uint64_t random = 0;
   if (getrandom(&random, sizeof random, 0) != ssize_t(sizeof random)) fail("name");
   const std::string beside = fmt::format("{}.{:016x}.part", path.string(), random);
@@ -51,13 +51,13 @@ bool write_report_now(const std::string& path) noexcept {
 
 void write_report_when_due(const std::string& path) noexcept {
   using Clock = std::chrono::steady_clock;
-  constexpr int share = 50;  // one part writing in 50 parts of run time
+  constexpr int share = 50;  // at most 1/50 of the run time is spent on writing
   constexpr std::chrono::milliseconds soonest(500);
   static std::atomic<Clock::rep> due = 0;
   const Clock::time_point start = Clock::now();
   Clock::rep expected = due.load();
   if (start.time_since_epoch().count() < expected) return;
-  // One thread writes; the others pass.
+  // One thread writes; the others return.
   if (!due.compare_exchange_strong(expected, (start + std::chrono::hours(1)).time_since_epoch().count()))
     return;
   write_report_now(path);

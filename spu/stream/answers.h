@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which calls answer something that later calls of a stream refer to.
+// Identifies the calls whose answers later calls of a stream refer to.
 #pragma once
 
 #include "dispatch/call_shape.h"
@@ -16,7 +16,7 @@ inline bool maps_a_buffer(CallId call) {
          call == CallId::MapNamedBufferEXT || call == CallId::MapNamedBufferRangeEXT;
 }
 
-/// An argument through which the call answers names of objects.
+/// Whether the call returns names of objects through this argument.
 inline bool answers_names(const ParameterShape& parameter) {
   return parameter.pointer == 1 && !parameter.input && parameter.object != ObjectKind::none;
 }
@@ -28,7 +28,7 @@ inline bool answers_names(CallId call) {
   return false;
 }
 
-/// Whether what the call answers here must be known when the stream tells what it had answered there.
+/// Whether the call's answer here must be kept until the stream reports the recorded answer.
 inline bool names_something(CallId call) {
   return call_shape(call).result_object != ObjectKind::none || is_location_query(call) || maps_a_buffer(call) ||
          answers_names(call);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many bytes the pointer arguments of a call stand for, images included.
+// The number of bytes that the pointer arguments of a call refer to, including images.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,10 @@
 
 namespace understudy::spu {
 
-/// Nothing when it is not known. Images are counted without gaps between their rows. 0 for a null pointer.
+/// Nothing if the size is unknown. Images are counted without gaps between their rows. 0 for a null pointer.
 std::optional<std::size_t> argument_bytes(CallId call, std::size_t parameter, const std::uint64_t* words);
 
-/// What a call hands to OpenGL, or has OpenGL write, through all of its pointers; what is not known counts
-/// nothing.
+/// The bytes that a call reads or writes through all of its pointers; arguments of unknown size count as 0.
 std::uint64_t call_bytes(CallId call, const std::uint64_t* words);
 
 }  // namespace understudy::spu

@@ -20,7 +20,7 @@ bool BeginAndEnd::follow(CallId call, const std::uint64_t* words) {
       list_leaves_.reset();
       return false;
     case CallId::EndList:
-      // What a list holds has happened only if it was executed as well.
+      // The calls of a list that was only compiled have not been executed.
       if (list_only_compiles_) inside_ = inside_before_list_;
       list_effects_[list_] = list_leaves_;
       list_only_compiles_ = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a stream is between glBegin and glEnd, where OpenGL answers no questions. Display lists may begin
-// what others end, so what each leaves behind is kept.
+// Tracks whether a stream is between glBegin and glEnd, where OpenGL answers no queries. A display list may
+// begin what another one ends, so the final state of each list is recorded.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,15 @@ namespace understudy::spu {
 
 class BeginAndEnd {
  public:
-  /// Returns true when the call was a list that has begun or ended something.
+  /// Returns true if the call executed a list that left it inside or outside glBegin/glEnd.
   bool follow(CallId call, const std::uint64_t* words);
   bool inside() const { return inside_; }
 
  private:
   bool inside_ = false;
-  /// What lists leave behind, once executed: inside, outside, or all as it was.
+  /// The state after a list was executed: inside, outside, or unchanged.
   std::map<GLuint, std::optional<bool>> list_effects_;
-  GLuint list_ = 0;  ///< being defined
+  GLuint list_ = 0;  ///< the list being defined
   std::optional<bool> list_leaves_;
   bool list_only_compiles_ = false;
   bool inside_before_list_ = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The buffer objects that pointer arguments are offsets into while they are bound.
+// The buffer bindings that turn pointer arguments into offsets.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,17 @@ struct BufferPoint {
   GLenum binding;  ///< for glGetIntegerv
 };
 
-/// Nothing for rules under which a pointer is always memory.
+/// Nothing for rules whose pointers always refer to memory.
 std::optional<BufferPoint> buffer_point(ExtentRule rule) noexcept;
 
-/// GL_ARRAY_BUFFER_BINDING for GL_ARRAY_BUFFER; GL_NONE for what is no target.
+/// GL_ARRAY_BUFFER_BINDING for GL_ARRAY_BUFFER; GL_NONE if `target` is not a target.
 GLenum binding_of_target(GLenum target) noexcept;
 
-/// The integer that OpenGL answers; nothing where it answers no question, as between glBegin and glEnd. The
-/// question then raises the error that any call but those of vertices would raise there.
+/// Returns glGetIntegerv's value, or nothing if OpenGL does not answer, as between glBegin and glEnd. The query
+/// then raises the error that any call except vertex calls would raise there.
 std::optional<GLint> asked(const DispatchTable& gl, GLenum name);
 
-/// Bytes of the buffer object that is bound to `target`.
+/// Size in bytes of the buffer object that is bound to `target`.
 std::uint64_t bound_bytes(const DispatchTable& gl, GLenum target);
 
 }  // namespace understudy::spu

@@ -16,7 +16,7 @@
 namespace understudy::spu {
 namespace {
 
-/// GL_ARRAY_BUFFER is nothing while arrays are pointed at memory.
+/// While in scope, no buffer is bound to GL_ARRAY_BUFFER, so that arrays can be pointed at memory.
 class WithoutArrayBuffer {
  public:
   explicit WithoutArrayBuffer(const DispatchTable& gl)
@@ -47,7 +47,7 @@ bool may_change_arrays(std::string_view name) {
          std::any_of(beginnings.begin(), beginnings.end(), [&](auto start) { return name.starts_with(start); });
 }
 
-/// Calls that read vertex arrays, and some of extensions that nobody has looked into.
+/// Calls that read vertex arrays, and some calls of extensions that were not examined.
 bool may_read_arrays(std::string_view name) {
   if (name.starts_with("glDrawBuffer") || name.starts_with("glDrawPixels") || name.starts_with("glDrawTex"))
     return false;
@@ -73,7 +73,7 @@ ArrayUse use_of(CallId call) {
   return all[std::size_t(call)];
 }
 
-/// OpenGL may read as far as glDrawRangeElements says that indices reach.
+/// OpenGL may read the whole index range that glDrawRangeElements specifies.
 void narrow_claim(CallId call, std::uint64_t* words, const ElementRange& range) {
   const CallShape& shape = call_shape(call);
   const std::uint8_t start = argument_named(shape, "start");
@@ -113,10 +113,10 @@ std::string BroughtArrays::take(std::span<const std::uint64_t> fields, const Rec
                   .first = first};
   const std::size_t bytes = brought.array.element_bytes();
   if (bytes != 0) brought.elements = std::int64_t(data->size() / bytes);
-  // Where the element 0 would be, that only the later ones are there for.
+  // The address of element 0, although only elements from `first` on are present.
   if (brought.elements > 0) brought.pointer = word_of(kept(*data, copies)) - std::uint64_t(first) * bytes;
   point_array(gl, brought.array, GLsizei(bytes), address_in(brought.pointer));
-  // OpenGL may have refused it, and read elsewhere.
+  // OpenGL may have rejected the call, and still read from elsewhere.
   if (in_memory_) note_pointer(brought.array, pointer_of(gl, brought.array));
   brought_.push_back(brought);
   return {};
@@ -150,7 +150,7 @@ void BroughtArrays::end(const DispatchTable& gl, bool restores) {
   copies_used_ = 0;
 }
 
-/// The event changes where arrays point, and nothing else: most need not be looked at again for every draw.
+/// The event only changes where arrays point, so that most of them need not be queried again for every draw.
 void BroughtArrays::note_pointer(const ClientArray& array, std::uint64_t pointer) {
   const auto found = std::find_if(in_memory_->begin(), in_memory_->end(), [&](const ClientArray& known) {
     return known.role == array.role && known.index == array.index;
@@ -162,7 +162,7 @@ void BroughtArrays::note_pointer(const ClientArray& array, std::uint64_t pointer
   }
 }
 
-/// False when it cannot be known now which arrays lie in memory.
+/// Queries which arrays are in memory; returns false if that is not possible now.
 bool BroughtArrays::look(bool inside_begin, const DispatchTable& gl) {
   if (in_memory_) return true;
   if (inside_begin || !asked(gl, GL_ARRAY_BUFFER_BINDING)) return false;

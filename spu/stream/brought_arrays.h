@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vertex arrays that came with a stream: copies of the elements that the next draw reads, at which OpenGL's
-// arrays point between the events `arrays` and `arrays_end` (client_arrays.h).
+// Vertex arrays that are part of a stream: copies of the elements that the next draw reads. OpenGL's arrays
+// point at them between the events `arrays` and `arrays_end` (client_arrays.h).
 //
-// In a stream from elsewhere no draw reads any other memory. A pointer that a stream named can get into OpenGL
-// in many ways (an offset whose buffer is deleted, a buffer name of 0 in the calls that take arrays by name),
-// so the arrays are looked at before a draw, and not only at the calls that set them.
+// In a stream from elsewhere, draws read no other memory. A pointer value from a stream can get into OpenGL in
+// many ways (an offset whose buffer is deleted, a buffer name of 0 in calls that take arrays by name), so the
+// arrays are checked before each draw, not only in the calls that set them.
 #pragma once
 
 #include <cstdint>
@@ -21,21 +21,22 @@ namespace understudy::spu {
 
 class BroughtArrays {
  public:
-  /// Does what an `arrays` event says. With `copies` the elements outlive the record. Answers what is wrong.
+  /// Executes an `arrays` event. With `copies` the elements outlive the record. Returns an error, or an empty
+  /// string.
   std::string begin(const Record& record, const DispatchTable& gl, bool copies);
-  /// The arrays point where they had pointed; nowhere unless `restores`.
+  /// Points the arrays where they had pointed before; to null unless `restores`.
   void end(const DispatchTable& gl, bool restores);
 
-  /// What is wrong with a call of a stream from elsewhere, or nothing. Looks before glBegin, since OpenGL
-  /// answers nothing behind it; a draw about which it answers nothing is to be left out. May narrow the range
-  /// that glDrawRangeElements claims in `words`.
+  /// Checks a call of a stream from elsewhere; returns an error, or an empty string. Queries the arrays before
+  /// glBegin, since OpenGL answers no queries after it; if they cannot be queried, sets `left_out`: the draw
+  /// must be skipped. May narrow the range that glDrawRangeElements specifies in `words`.
   std::string check(CallId call, std::uint64_t* words, bool inside_begin, const DispatchTable& gl,
                     bool& left_out);
   bool active() const { return active_; }
 
  private:
   struct Brought {
-    ClientArray array;  ///< `pointer` as the sender had it
+    ClientArray array;  ///< `pointer` is the sender's
     std::uint64_t pointer = 0;
     std::int64_t first = 0;
     std::int64_t elements = 0;
@@ -51,9 +52,9 @@ class BroughtArrays {
 
   bool active_ = false;
   std::vector<Brought> brought_;
-  std::vector<std::vector<std::uint64_t>> copies_;  ///< kept for their memory
+  std::vector<std::vector<std::uint64_t>> copies_;  ///< not freed, so that their memory is reused
   std::size_t copies_used_ = 0;
-  /// Enabled arrays without a buffer object, as OpenGL told; nothing when they may be others by now.
+  /// Enabled arrays without a buffer object, as queried; nothing if they may have changed since.
   std::optional<std::vector<ClientArray>> in_memory_;
 };
 

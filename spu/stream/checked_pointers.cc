@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The decoder's part that decides about pointers of a stream from elsewhere.
+// The part of the decoder that checks pointers of a stream from elsewhere.
 #include "spu/stream/checked_pointers.h"
 
 #include <fmt/format.h>
@@ -17,14 +17,14 @@
 namespace understudy::spu {
 namespace {
 
-/// OpenGL's longest vector of parameters, a matrix of doubles.
+/// Size of OpenGL's longest parameter vector, a matrix of doubles.
 constexpr std::size_t longest_parameter_bytes = 128;
 
 bool is_bytes(ReferenceKind kind) {
   return kind == ReferenceKind::inside || kind == ReferenceKind::payload;
 }
 
-/// Bytes that the call reads or writes at an offset into a buffer; nothing when that is not known.
+/// Bytes that the call reads or writes at an offset into a buffer; nothing if unknown.
 std::optional<std::size_t> bytes_in_buffer(CallId call, std::size_t p, const std::uint64_t* words,
                                            const DispatchTable& gl) {
   switch (call_shape(call).parameters()[p].rule) {
@@ -40,12 +40,12 @@ std::optional<std::size_t> bytes_in_buffer(CallId call, std::size_t p, const std
   }
 }
 
-/// Whether OpenGL answers a call whose extent is not known with an error, and reads nothing.
+/// Whether OpenGL rejects a call of unknown extent with an error, and reads nothing.
 bool driver_refuses(CallId call, std::size_t p, const std::uint64_t* words) {
   const ExtentRule rule = call_shape(call).parameters()[p].rule;
   if (rule != ExtentRule::image) return tells_by_enumerant(rule);
-  // The extent of a huge image is not known either, and a driver may read that: GL_UNPACK_ROW_LENGTH lets its
-  // rows overlap.
+  // The extent of a huge image is unknown too, but a driver may read it: GL_UNPACK_ROW_LENGTH lets its rows
+  // overlap.
   const ImageShape image = image_shape(call, words);
   return !is_known_pixel(image.format, image.type);
 }
@@ -73,7 +73,7 @@ bool may_be(const ParameterShape& parameter, ReferenceKind kind) noexcept {
       return kind == ReferenceKind::strings;
     case ExtentRule::address:
     case ExtentRule::unknown:
-      // Translated to nothing: the call is left out.
+      // Has no translation: the call is skipped.
       return address;
     default:
       return parameter.pointer == 1 && is_bytes(kind);
@@ -93,7 +93,7 @@ std::string_view refused_kind(const ParameterShape& parameter, ReferenceKind kin
 
 std::string Decoder::refuse_null(const Call& call, std::size_t p) {
   const ParameterShape& parameter = call.shape->parameters()[p];
-  // What is bound decides, or what the sender's process alone knew.
+  // These depend on bindings, or on information that only the sender's process had.
   if (parameter.pointer == 0 || !parameter.input || buffer_point(parameter.rule) ||
       parameter.rule == ExtentRule::address)
     return {};
@@ -103,8 +103,8 @@ std::string Decoder::refuse_null(const Call& call, std::size_t p) {
   return in_call(call.id, fmt::format("{} is a null pointer", parameter.name()));
 }
 
-/// Drivers may read on: strings to a zero, whatever length they are given, and parameters whose names nobody
-/// here knows. There is always something of ours to read.
+/// Drivers may read beyond the given size: strings up to a zero, whatever their length argument, and parameters
+/// whose names are unknown here. The argument is copied to a larger buffer of ours.
 void Decoder::give_room(Call& call, std::size_t p) {
   const ParameterShape& parameter = call.shape->parameters()[p];
   const bool text = parameter.type == ValueType::character && parameter.pointer == 1;
@@ -115,7 +115,7 @@ void Decoder::give_room(Call& call, std::size_t p) {
   call.words[p] = reinterpret_cast<std::uintptr_t>(copy);
 }
 
-/// The pointer is an offset, since a buffer is bound.
+/// Checks a pointer that is an offset, since a buffer is bound.
 std::string Decoder::check_offset(Call& call, std::size_t p, GLenum target, const DispatchTable& gl) {
   const ParameterShape& parameter = call.shape->parameters()[p];
   const auto wrong = [&](std::string_view what) {
@@ -124,10 +124,10 @@ std::string Decoder::check_offset(Call& call, std::size_t p, GLenum target, cons
   if (call.kinds[p] != ReferenceKind::null && call.kinds[p] != ReferenceKind::address)
     return wrong("is memory, but a buffer is bound");
   call.into_buffer |= parameter.rule == ExtentRule::image_out;
-  // Vertex arrays are given their offset before their buffer has a size, and drivers check what a draw reads.
+  // Vertex arrays may get their offset before their buffer has a size; drivers check what a draw reads.
   if (parameter.rule == ExtentRule::client_array) return {};
   if (parameter.rule == ExtentRule::index_lists) {
-    // Where the list of offsets lies in the sender's memory.
+    // The list of offsets is in the sender's memory.
     call.skip = true;
     return {};
   }
@@ -137,18 +137,18 @@ std::string Decoder::check_offset(Call& call, std::size_t p, GLenum target, cons
   if (!needed) return wrong("is an offset into a buffer, and nobody knows how far the call goes");
   if (*needed > 0 && (offset > bytes || *needed > bytes - offset))
     return wrong(fmt::format("goes beyond the buffer: {} bytes at {} of {}", *needed, offset, bytes));
-  // GL_UNPACK_COMPRESSED_BLOCK_* and relatives would let the driver skip rows behind those.
+  // GL_UNPACK_COMPRESSED_BLOCK_* and similar parameters could make the driver read beyond these bytes.
   call.tight_unpack |= parameter.rule == ExtentRule::counted_or_unpack;
   call.tight_pack |= parameter.rule == ExtentRule::image_out &&
                      std::string_view(call_name(call.id)).find("Compressed") != std::string_view::npos;
   return {};
 }
 
-/// No buffer is bound, so the pointer is memory.
+/// Checks a pointer that refers to memory, since no buffer is bound.
 std::string Decoder::check_memory(Call& call, std::size_t p) {
   const ParameterShape& parameter = call.shape->parameters()[p];
   if (parameter.rule == ExtentRule::client_array) {
-    // The elements come with the draws.
+    // The elements are sent with the draws.
     call.words[p] = 0;
     return {};
   }
@@ -161,7 +161,7 @@ std::string Decoder::check_memory(Call& call, std::size_t p) {
                           : pointee_bytes(call.id, p, call.words.data());
   if (needed ? *needed == 0 : driver_refuses(call.id, p, call.words.data())) return {};
   if (parameter.rule == ExtentRule::indirect && needed && *needed <= most_output_bytes) {
-    // Core profiles answer with an error, others draw nothing.
+    // Core profiles report an error, others draw nothing.
     call.words[p] = reinterpret_cast<std::uintptr_t>(scratch(*needed));
     return {};
   }

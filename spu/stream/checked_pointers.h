@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a pointer argument may be in a stream from elsewhere.
+// The kinds of reference that a pointer argument may have in a stream from elsewhere.
 #pragma once
 
 #include <string_view>
@@ -9,10 +9,10 @@
 
 namespace understudy::spu {
 
-/// As far as the argument's rule tells; what is bound decides the rest (Decoder::check_pointers).
+/// Whether the argument's rule allows this kind; the rest depends on bindings (Decoder::check_pointers).
 bool may_be(const ParameterShape& parameter, ReferenceKind kind) noexcept;
 
-/// "an address of another process": what such a reference is instead.
+/// Describes a reference that is not allowed: "an address of another process".
 std::string_view refused_kind(const ParameterShape& parameter, ReferenceKind kind) noexcept;
 
 }  // namespace understudy::spu

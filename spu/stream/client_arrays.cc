@@ -13,7 +13,7 @@
 namespace understudy::spu {
 namespace {
 
-/// The names by which the driver tells about a fixed-function array; 0 where there is nothing to ask.
+/// The names for querying a fixed-function array; 0 if there is no such query.
 struct FixedArrayNames {
   ArrayRole role;
   GLenum array;
@@ -110,7 +110,7 @@ void add_generic(const DispatchTable& gl, GLuint index, std::vector<ClientArray>
   arrays.push_back(array);
 }
 
-/// Where a draw's arguments stand, by the names that the registry gives them.
+/// Positions of a draw's arguments, found by their names in the registry.
 struct DrawArguments {
   std::uint8_t first = no_argument;
   std::uint8_t count = no_argument;
@@ -169,9 +169,9 @@ void include(ElementRange& range, std::int64_t first, std::int64_t last) {
   }
 }
 
-/// Indices that mean "start a new primitive" name no vertex.
+/// The index that starts a new primitive and does not refer to a vertex.
 std::optional<std::uint32_t> restart_index(const DispatchTable& gl, std::size_t index_size) {
-  // NV_primitive_restart, which is older, has names of its own and counts as client state.
+  // NV_primitive_restart is older, has its own names and is client state.
   if (gl.PrimitiveRestartIndexNV != nullptr && gl.IsEnabled(GL_PRIMITIVE_RESTART_NV))
     return std::uint32_t(state_value(gl, GL_PRIMITIVE_RESTART_INDEX_NV));
   if (gl.PrimitiveRestartIndex == nullptr) return std::nullopt;

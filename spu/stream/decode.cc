@@ -21,14 +21,14 @@
 namespace understudy::spu {
 namespace {
 
-/// Asks and changes nothing: a stream from elsewhere knows the answer already.
+/// Whether the call only queries: a stream from elsewhere contains the answer already.
 bool only_asks(CallId call) {
   const std::string_view name = call_name(call);
   if (name.starts_with("glGetUniformLocation")) return false;
   return name.starts_with("glGet") || name.starts_with("glIs") || name.starts_with("glAre");
 }
 
-/// Kinds that contexts of a share group have in common.
+/// Whether contexts of a share group share objects of this kind.
 bool is_shared(ObjectKind kind) {
   switch (kind) {
     case ObjectKind::framebuffer:
@@ -46,12 +46,12 @@ bool is_named(CallId call) {
   return std::string_view(call_name(call)).find("Named") != std::string_view::npos;
 }
 
-/// The buffer object that a call with its target, or its name, as first argument is about.
+/// The buffer object that a call refers to by its first argument, a target or a name.
 GLuint buffer_of(CallId call, const std::uint64_t* words, const DispatchTable& gl) {
   return is_named(call) ? GLuint(words[0]) : GLuint(state_value(gl, binding_of_target(GLenum(words[0]))));
 }
 
-/// Bytes of the mapping that the call has just made.
+/// Size in bytes of the mapping that the call has just created.
 std::size_t mapped_bytes(CallId call, const std::uint64_t* words, const DispatchTable& gl) {
   const std::uint8_t length = argument_named(call_shape(call), "length");
   if (length != no_argument) return words[length];
@@ -64,8 +64,8 @@ std::size_t mapped_bytes(CallId call, const std::uint64_t* words, const Dispatch
   return std::size_t(std::max<GLint64>(size, 0));
 }
 
-/// Whether the driver still has the mapping, and it may be written to. A mapping ends in many ways, some of
-/// them in other contexts, so the driver is asked.
+/// Whether the driver still has the mapping, and allows writing to it. A mapping can end in many ways, some of
+/// them in other contexts, so the driver is queried.
 bool is_mapped(const ObjectNames::Mapping& mapping, const DispatchTable& gl) {
   const auto before = asked(gl, GL_ARRAY_BUFFER_BINDING);
   if (!before || !gl.IsBuffer(mapping.buffer)) return false;
@@ -78,7 +78,7 @@ bool is_mapped(const ObjectNames::Mapping& mapping, const DispatchTable& gl) {
   return first == mapping.first && access != GL_READ_ONLY;
 }
 
-/// glPixelStore as images lie in streams, for as long as this lives.
+/// While in scope, glPixelStore parameters match the layout of images in streams.
 class TightPixels {
  public:
   TightPixels(const DispatchTable& gl, const std::array<GLenum, 8>& names, bool wanted)
@@ -106,7 +106,7 @@ std::string in_call(CallId call, std::string_view what) {
   return fmt::format("{}: {}", call_name(call), what);
 }
 
-/// The answer goes to a bound buffer object, where later calls find it.
+/// Whether the answer goes to a bound buffer object, where later calls may use it.
 bool Decoder::answers_into_buffer(const Call& call) {
   const auto parameters = call.shape->parameters();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
@@ -219,7 +219,7 @@ std::string Decoder::read_references(const Record& record, Call& call) {
   return {};
 }
 
-/// Strings and lists count by other arguments, so they come when those are there.
+/// Strings and lists are read last, because their sizes depend on other arguments.
 std::string Decoder::read_lists_of(const Record& record, Call& call) {
   for (std::size_t p = 0; p < call.shape->parameter_count; ++p) {
     std::string error;
@@ -230,7 +230,7 @@ std::string Decoder::read_lists_of(const Record& record, Call& call) {
   return {};
 }
 
-/// Whether as much came with the stream as the call reads.
+/// Checks that the stream contains as many bytes as the call reads.
 std::string Decoder::measure(Call& call, std::size_t p) {
   const ParameterShape& parameter = call.shape->parameters()[p];
   if (call.kinds[p] == ReferenceKind::null && !believes()) return refuse_null(call, p);
@@ -281,7 +281,7 @@ std::string Decoder::read(const Record& record, ReadCall& to) {
   return error;
 }
 
-/// Names of the sender's objects become ours. False when the call means nothing here.
+/// Translates the sender's names of objects to ours. Returns false if the call has no meaning here.
 bool Decoder::translate(Call& call) {
   const auto parameters = call.shape->parameters();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
@@ -323,7 +323,7 @@ bool Decoder::translate(Call& call) {
   return true;
 }
 
-/// A mapping that ends must not be written to any more.
+/// Drops mappings that the call ends, so that they are not written to any more.
 void Decoder::forget_mappings(const Call& call, const DispatchTable& gl) {
   ObjectNames& buffers = names(ObjectKind::buffer);
   if (!buffers.has_mappings()) return;
@@ -343,7 +343,7 @@ void Decoder::forget_mappings(const Call& call, const DispatchTable& gl) {
     case CallId::NamedBufferDataEXT:
     case CallId::DeleteBuffers:
     case CallId::DeleteBuffersARB:
-      // Rare, and the name may be nobody's: what else is mapped loses its later writes, never its safety.
+      // Rare, and the name may be unknown: other mappings lose their later writes, but nothing becomes unsafe.
       buffers.drop_all_mappings();
       break;
     default:
@@ -428,7 +428,7 @@ Decoded Decoder::decode_event(const Record& record, const DispatchTable& gl) {
   return {};
 }
 
-/// A call of a stream from elsewhere.
+/// Makes a call of a stream from elsewhere.
 Decoded Decoder::decode_unbelieved(Call& call, const DispatchTable& gl) {
   answer_ = {};
   const bool linked = origin_ == StreamOrigin::linked;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// From records back to calls.
+// Decodes records to calls.
 //
-// A stream of this process (pack and unpack in one chain) may hold addresses of this process; one from a file
-// or another machine may not, and nothing in it is believed. A pointer in it is one of three things: bytes that
-// came with it, measured against what the call reads; memory of ours for answers; or an offset into a buffer
-// object, measured against the buffer's size (checked_pointers.cc, brought_arrays.h, provided_outputs.cc).
-// Anything else is an error that names the call, and the call is not made. Names of objects are translated.
-// Where the other end waits for the answers (a linked stream), they are kept for it, and names are the ones
-// given here.
+// A stream of this process (pack and unpack in one chain) may contain addresses of this process. A stream from
+// a file or another machine may not, and nothing in it is trusted. A pointer in it is one of three things:
+// bytes of the stream, whose size is checked against what the call reads; memory of ours for answers; or an
+// offset into a buffer object, checked against the buffer's size (checked_pointers.cc, brought_arrays.h,
+// provided_outputs.cc). Anything else is an error that names the call, and the call is not made. Names of
+// objects are translated. If the sender waits for answers (a linked stream), they are kept for it, and it uses
+// the names that are created here.
 #pragma once
 
 #include <array>
@@ -29,50 +29,51 @@
 
 namespace understudy::spu {
 
-/// What became of a record.
+/// The outcome of a record.
 struct Decoded {
   std::uint64_t result = 0;
-  std::string error;  ///< empty, or what is wrong with the record
+  std::string error;  ///< an error in the record, or empty
 };
 
 enum class StreamOrigin {
   this_process,
-  elsewhere,  ///< recorded: what it asks was answered when it was
-  linked,     ///< another process, which is told what its calls answer
+  elsewhere,  ///< recorded: its queries were answered when it was recorded
+  linked,     ///< from another process, which gets the answers of its calls
 };
 
 class Decoder {
  public:
-  /// `shared` are the names of a share group of contexts; a decoder serves one context.
+  /// `shared` are the names of a share group of contexts; a decoder is for one context.
   Decoder(StreamOrigin origin, std::shared_ptr<ObjectNames> shared)
       : origin_(origin), shared_names_(std::move(shared)) {}
   /// For streams of this process, whose names need no translation.
   Decoder() : Decoder(StreamOrigin::this_process, nullptr) {}
 
-  /// Makes the call, or does what the event says, on `gl`. Events about contexts, threads and frames are the
-  /// caller's: they are an error here.
+  /// Makes the call, or executes the event, on `gl`. Events about contexts, threads and frames are handled by
+  /// the caller and are not allowed here.
   Decoded decode(const Record& record, const DispatchTable& gl);
 
-  /// The call that a record holds.
+  /// The call in a record.
   struct ReadCall {
     CallId id{};
-    /// Pointers lead into the record, or to memory of the decoder that the next decode() reuses, where `kinds`
-    /// says so: all but those of kind address and output, which are numbers to be shown and never followed.
+    /// Pointers refer to the record, or to memory of the decoder that the next decode() reuses, unless their
+    /// kind is address or output: those are numbers to be printed and never dereferenced.
     std::array<std::uint64_t, max_parameters> words{};
     std::array<ReferenceKind, max_parameters> kinds{};
   };
-  /// For readers that print or count; makes no call. Answers what is wrong with the record.
+  /// Reads a record without making its call, for printing or counting. Returns an error in the record, or an
+  /// empty string.
   std::string read(const Record& record, ReadCall& call);
 
   /// Pixels that the last call read into memory of the decoder (glReadPixels of a stream from elsewhere); empty
-  /// when it read none.
+  /// if it read none.
   struct ReadImage {
     ImageShape shape;
     std::vector<std::byte> pixels;
   };
   const ReadImage& read_image() const { return read_image_; }
 
-  /// What the last call of a linked stream has answered.
+  /// The answer of the last call of a linked stream.
   const CallAnswer& call_answer() const { return call_answer_; }
 
  private:
@@ -112,31 +113,31 @@ class Decoder {
   void remember_answer(const Call& call, std::uint64_t result, const DispatchTable& gl);
   Decoded take_answers(const Record& record);
   Decoded write_mapped(const Record& record, const DispatchTable& gl);
-  /// Memory that lasts until the next record.
+  /// Returns memory that stays valid until the next record.
   std::uint64_t* scratch(std::size_t bytes);
 
   const StreamOrigin origin_;
   BeginAndEnd begin_and_end_;
   BroughtArrays arrays_;
-  bool query_buffer_ = false;  ///< one was bound: answers to queries may go there
+  bool query_buffer_ = false;  ///< a query buffer was bound, which may receive answers of queries
   std::vector<std::vector<std::uint64_t>> scratch_;
   std::size_t scratch_used_ = 0;
-  /// What glFeedbackBuffer and glSelectBuffer were given, the last one at the end; the driver may keep an
-  /// earlier one when it refuses a call.
+  /// The buffers given to glFeedbackBuffer and glSelectBuffer, the last one at the end. The driver may keep an
+  /// earlier one if it rejects a call.
   std::vector<std::vector<std::uint64_t>> feedback_;
   std::vector<std::vector<std::uint64_t>> selection_;
   std::shared_ptr<ObjectNames> shared_names_;
-  ObjectNames own_names_;  ///< of kinds that contexts do not share
+  ObjectNames own_names_;  ///< names of kinds that contexts do not share
   ReadImage read_image_;
   CallAnswer call_answer_;
 
-  /// What the last call answered here, until the stream tells what it had answered there.
+  /// The answer of the last call here, kept until the stream reports the recorded answer.
   struct Answer {
     CallId call{};
     std::uint64_t result = 0;
     std::uint64_t program = 0;  ///< for locations
     ObjectNames::Mapping mapped;
-    std::vector<std::vector<std::uint32_t>> names;  ///< of every output that names objects
+    std::vector<std::vector<std::uint32_t>> names;  ///< for every output that names objects
   } answer_;
 };
 

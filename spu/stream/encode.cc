@@ -69,7 +69,7 @@ Encoder::Argument Encoder::prepare(CallId call, std::size_t parameter, const std
   Argument argument;
   const auto point = buffer_point(pointer.rule);
   if (!point && word == 0) return argument;
-  // Calls that need a binding are errors between glBegin and glEnd: OpenGL reads nothing.
+  // Calls that depend on a binding are errors between glBegin and glEnd: OpenGL reads nothing.
   if (point) {
     if (inside_begin()) return argument;
     if (ask(point->binding) != 0) {
@@ -90,7 +90,7 @@ Encoder::Argument Encoder::prepare(CallId call, std::size_t parameter, const std
     case ExtentRule::image: {
       const ImageShape image = image_shape(call, words);
       const PixelStore store = pixel_store(ask(), unpack_names);
-      // Formats that OpenGL does not know are errors: nothing is read.
+      // Formats unknown to OpenGL are errors: nothing is read.
       if (!image_extent(image, store)) return argument;
       argument.owned = tight_image(image, store, address_in(word));
       argument.reference.kind = ReferenceKind::inside;
@@ -179,7 +179,8 @@ void append_arrays(const std::vector<ClientArray>& arrays, const ElementRange& r
         divisor == 0 ? range.last : first + (range.last_instance - range.first_instance) / divisor;
     const std::size_t bytes = array.element_bytes();
     elements.clear();
-    // An element before the array's begin, or a null array, is the application's error; none of it is read.
+    // An element before the start of the array, or a null array, is an error of the application; nothing is
+    // copied.
     if (bytes != 0 && array.pointer != 0 && last >= first && first >= 0) {
       elements.resize(std::size_t(last - first + 1) * bytes);
       for (std::int64_t i = first; i <= last; ++i) {

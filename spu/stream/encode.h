@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// From calls to records.
+// Encodes calls to records.
 //
-// Everything that OpenGL would read through a pointer while the call runs is copied into the record, so the
-// application may do with its memory what it likes afterwards: pixels as tight_image() lays them, strings,
-// arrays, indices, and the elements of client vertex arrays that a draw uses. Offsets into bound buffers stay
-// offsets.
+// Everything that OpenGL would read through a pointer during the call is copied into the record, so that the
+// application may change its memory afterwards: pixels in the layout of tight_image(), strings, arrays,
+// indices, and the elements of client vertex arrays that a draw uses. Offsets into bound buffers stay offsets.
 #pragma once
 
 #include <cstdint>
@@ -22,34 +21,34 @@
 
 namespace understudy::spu {
 
-/// The caller must know the answer, or the memory behind a pointer, before it goes on: results, outputs, and
-/// inputs whose extent nobody knows.
+/// Whether the caller needs the answer, or the memory behind a pointer, before it continues: results, outputs,
+/// and inputs of unknown extent.
 bool needs_answer(CallId call) noexcept;
 
 class Encoder {
  public:
-  /// What a pointer means depends on bindings, the pixel store and the vertex arrays; `questions` is asked for
-  /// them. `before_question` runs first: calls that were recorded but not made yet must be made, as they may
-  /// change the answers.
+  /// The meaning of a pointer depends on bindings, the pixel store and the vertex arrays, which are queried
+  /// from `questions`. `before_question` runs first: it must make the calls that were recorded but not made
+  /// yet, as they may change the answers.
   Encoder(const DispatchTable& questions, std::function<void()> before_question);
 
-  /// Appends the call, with events around it where it needs them, to `to`. `words` are the arguments as
-  /// AsWords makes them.
+  /// Appends the call to `to`, enclosed in events if it needs them. `words` are the arguments as encoded by
+  /// AsWords.
   void encode(CallId call, const std::uint64_t* words, Records& to);
 
-  /// Whoever reads the records has another memory: addresses of the application are told as "somewhere", so
-  /// that calls that differ in nothing else are the same words.
+  /// For readers in another process: replaces the application's addresses by `somewhere`, so that calls which
+  /// differ only in addresses are encoded as the same words.
   void hide_addresses() { hides_addresses_ = true; }
 
-  /// The application is between glBegin and glEnd: OpenGL answers no questions.
+  /// Whether the application is between glBegin and glEnd, where OpenGL answers no queries.
   bool inside_begin() const { return begin_and_end_.inside(); }
 
  private:
-  /// A pointer argument on its way into a record.
+  /// A pointer argument while it is being encoded.
   struct Argument {
     Reference reference;
-    std::span<const std::byte> bytes;  ///< what `reference` is to point at, when its kind is inside
-    std::vector<std::byte> owned;      ///< where bytes point, when they are ours
+    std::span<const std::byte> bytes;  ///< the bytes that `reference` refers to, if its kind is inside
+    std::vector<std::byte> owned;      ///< the memory of `bytes`, if it is ours
   };
 
   std::uint64_t told(std::uint64_t address) const;
@@ -64,10 +63,10 @@ class Encoder {
 
   const DispatchTable& questions_;
   std::function<void()> before_question_;
-  std::vector<Argument> arguments_;  ///< kept for its memory
+  std::vector<Argument> arguments_;  ///< not freed, so that its memory is reused
   bool hides_addresses_ = false;
   BeginAndEnd begin_and_end_;
-  /// The application pointed an array at its own memory at least once: draws must look.
+  /// The application has pointed an array at its own memory at least once: draws must be checked.
   bool client_memory_ = false;
   std::vector<ClientArray> arrays_at_begin_;
   ElementRange elements_since_begin_;
@@ -75,10 +74,10 @@ class Encoder {
   std::uint64_t begin_generation_ = 0;
 };
 
-/// An address that the application has, where it is hidden.
+/// Replaces a hidden address of the application.
 constexpr std::uint64_t somewhere = 1;
 
-/// The `arrays` event for `range` of `arrays`.
+/// Appends the `arrays` event for `range` of `arrays`.
 void append_arrays(const std::vector<ClientArray>& arrays, const ElementRange& range, Records& to,
                    bool hides_addresses = false);
 

@@ -9,7 +9,7 @@
 namespace understudy::spu {
 namespace {
 
-/// How many values a parameter name of glTexParameter, glLight, glFog and relatives takes.
+/// The number of values of a parameter of glTexParameter, glLight, glFog and similar commands.
 std::size_t values_of(GLenum name) {
   switch (name) {
     case GL_AMBIENT:
@@ -66,7 +66,7 @@ std::optional<std::size_t> list_name_size(GLenum type) {
   }
 }
 
-/// Values of one control point.
+/// The number of values per control point.
 std::optional<std::size_t> map_components(GLenum target) {
   switch (target) {
     case GL_MAP1_INDEX:
@@ -96,7 +96,7 @@ std::optional<std::size_t> map_components(GLenum target) {
   }
 }
 
-/// Beyond this a count is nonsense; it keeps all products below within 64 bits.
+/// Larger counts are invalid; this keeps all products below within 64 bits.
 constexpr std::int64_t most_values = std::int64_t(1) << 40;
 
 /// glMap1(target, u1, u2, stride, order, points), glMap2(target, u1, u2, ustride, uorder, v1, v2, vstride,
@@ -109,15 +109,15 @@ std::optional<std::size_t> map_points(const CallShape& shape, const std::uint64_
   for (std::size_t direction = 0; direction < (surface ? 2U : 1U); ++direction) {
     const auto stride = std::int64_t(std::int32_t(words[3 + 4 * direction]));
     const auto order = std::int64_t(std::int32_t(words[4 + 4 * direction]));
-    // OpenGL refuses these, and orders beyond GL_MAX_EVAL_ORDER, which is a few dozen, without reading a point.
+    // OpenGL rejects these, and orders above GL_MAX_EVAL_ORDER, which is a few dozen, without reading a point.
     if (order < 1 || order > 64 || stride < std::int64_t(*components)) return 0;
     values += (order - 1) * stride;
   }
   return std::size_t(values) * value;
 }
 
-/// What glDraw*Indirect reads. Where a buffer holds the number of draws, the call says how many there are at
-/// most.
+/// The bytes that glDraw*Indirect reads. If a buffer contains the number of draws, the call specifies their
+/// maximum.
 std::size_t indirect_bytes(const CallShape& shape, const std::uint64_t* words) {
   const bool elements = shape.parameter_count > 2 && std::string_view(shape.parameters()[1].name()) == "type";
   const std::size_t one = elements ? 20 : 16;
@@ -134,7 +134,7 @@ std::size_t indirect_bytes(const CallShape& shape, const std::uint64_t* words) {
   return std::size_t(draws - 1) * (stride != 0 ? std::size_t(stride) : one) + one;
 }
 
-/// The argument that a rule counts by, with the bits that OpenGL sees of its word; 1 without one.
+/// The value of the argument that a rule counts by, in the type that OpenGL sees; 1 without such an argument.
 std::int64_t counted_by(const CallShape& shape, const ParameterShape& pointer, const std::uint64_t* words) {
   if (pointer.counted_by == no_argument) return 1;
   const std::uint64_t word = words[pointer.counted_by];
@@ -164,7 +164,7 @@ ImageShape image_shape(CallId call, const std::uint64_t* words) {
     return argument == no_argument ? otherwise : GLsizei(words[argument]);
   };
   ImageShape shape;
-  // glPolygonStipple says nothing of its image: it is always 32 by 32 bits. glBitmap says its size alone.
+  // glPolygonStipple has no size arguments: its image is always 32 by 32 bits. glBitmap has only a size.
   const GLsizei otherwise = image.width == no_argument ? 32 : 1;
   shape.width = size(image.width, otherwise);
   shape.height = size(image.height, otherwise);
@@ -214,7 +214,7 @@ std::optional<std::size_t> least_pointee_bytes(CallId call, std::size_t paramete
 
 namespace {
 
-/// The type of indices is the first enumerant behind their number.
+/// The type of indices is the first enumerant after their number.
 std::optional<std::size_t> index_bytes(const CallShape& shape, const ParameterShape& pointer,
                                        std::int64_t count, const std::uint64_t* words) {
   for (std::size_t p = 0; p < shape.parameter_count; ++p) {

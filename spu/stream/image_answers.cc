@@ -26,7 +26,7 @@ std::optional<ImageAnswer> with_rows(const ImageShape& shape) {
   return ImageAnswer{shape, *bytes};
 }
 
-/// A level of a texture, by target or by name.
+/// A level of a texture that is specified by target or by name.
 struct Level {
   const DispatchTable& gl;
   bool named;
@@ -108,7 +108,7 @@ std::optional<ImageAnswer> whole_answer(CallId call, const std::uint64_t* words,
 std::optional<ImageAnswer> image_answer(CallId call, const std::uint64_t* words, const DispatchTable& gl) {
   auto answer = whole_answer(call, words, gl);
   if (!answer) return std::nullopt;
-  // The caller's memory holds no more than it says.
+  // The caller's memory is no larger than bufSize.
   const std::uint8_t room = argument_named(call_shape(call), "bufSize");
   if (room != no_argument && words[room] < answer->bytes) answer->bytes = 0;
   return answer;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How large the pixels are that a command is going to write.
+// The size of the pixels that a command is going to write.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@
 namespace understudy::spu {
 
 struct ImageAnswer {
-  std::optional<ImageShape> shape;  ///< nothing: bytes without rows, whatever GL_PACK_* says
+  std::optional<ImageShape> shape;  ///< nothing: bytes without rows, independent of GL_PACK_*
   std::size_t bytes = 0;            ///< with rows that follow each other without gaps
 };
 
-/// What the command with these arguments writes; asks `gl` for the size of textures. Nothing when it writes
-/// nothing, or is not known here: the sides of a filter, histograms and extrema.
+/// What the command with these arguments writes; queries `gl` for the size of textures. Nothing if it writes
+/// nothing, or is not supported here: separable filters, histograms and extrema.
 std::optional<ImageAnswer> image_answer(CallId call, const std::uint64_t* words, const DispatchTable& gl);
 
 }  // namespace understudy::spu

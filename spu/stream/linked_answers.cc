@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The decoder's part for linked streams: calls that ask are made, and what they answer is kept.
+// The part of the decoder for linked streams: queries are made, and answers are kept for the sender.
 #include <algorithm>
 #include <cstring>
 #include <string_view>
@@ -15,8 +15,8 @@
 namespace understudy::spu {
 namespace {
 
-/// Buffers that are mapped keep what the application does not write; only where it says that it will not look
-/// and not care can that be spared.
+/// Bytes of a mapped buffer that the application does not write stay unchanged, so the sender needs the
+/// contents, unless the call discards them.
 bool contents_matter(CallId call, const std::uint64_t* words) {
   const std::uint8_t access_at = argument_named(call_shape(call), "access");
   if (access_at == no_argument || argument_named(call_shape(call), "length") == no_argument) return true;
@@ -24,7 +24,7 @@ bool contents_matter(CallId call, const std::uint64_t* words) {
   return (GLbitfield(words[access_at]) & discarded) == 0;
 }
 
-/// What lies where the call will map. Empty when the call is going to fail.
+/// The contents of the range that the call will map. Empty if the call is going to fail.
 std::vector<std::byte> contents_before(CallId call, const std::uint64_t* words, const DispatchTable& gl) {
   const bool named = std::string_view(call_name(call)).find("Named") != std::string_view::npos;
   GLint size = 0;
@@ -62,7 +62,7 @@ std::string Decoder::provide_image(Call& call, std::size_t p, const DispatchTabl
     return std::string(call_name(call.id)) + ": claims an answer beyond all reason";
   AnsweredOutput output{
       .parameter = std::uint32_t(p), .image = image->shape, .bytes = std::vector<std::byte>(image->bytes)};
-  // OpenGL may write a whole word for an empty image's sake, and wants an address.
+  // OpenGL needs a valid address even for an empty image, and may write a whole word there.
   std::byte nothing[8];
   call.words[p] = reinterpret_cast<std::uintptr_t>(output.bytes.empty() ? nothing : output.bytes.data());
   const PixelStore store = pixel_store(gl, pack_names);
@@ -73,7 +73,7 @@ std::string Decoder::provide_image(Call& call, std::size_t p, const DispatchTabl
   return {};
 }
 
-/// Pointers that OpenGL answers are offsets that the sender gave it, but for these.
+/// Whether a returned pointer may be an address in this process instead of an offset that the sender has set.
 bool Decoder::tells_address_of_ours(const Call& call) const {
   if (arrays_.active()) return true;
   const std::string_view name = call_name(call.id);
@@ -97,9 +97,9 @@ void Decoder::answer_outputs(const Call& call) {
     while (bytes > 0 && first[bytes - 1] == unwritten) --bytes;
     if (bytes == 0) continue;
     if (parameter.pointer > 1 && tells_address_of_ours(call)) continue;
-    // Values end where one does; of untyped data nobody knows what the last byte may be.
+    // Rounded up to whole values. Untyped data may end with bytes equal to `unwritten`, so all of it is taken.
     const std::size_t value = parameter.pointer > 1 ? sizeof(void*) : value_size(parameter.type);
-    // (Where the call does not say how much it writes, it is the text of a program.)
+    // (If the call does not determine its size, it is the text of a program.)
     if (parameter.type == ValueType::untyped && pointee_bytes(call.id, p, call.words.data())) {
       bytes = call.bytes[p];
     } else {
@@ -128,7 +128,7 @@ void Decoder::answer_result(const Call& call, std::uint64_t result) {
   }
 }
 
-/// What was written into the application's feedback or selection buffer while it could not see it.
+/// Adds what OpenGL has written into the application's feedback or selection buffer in the meantime.
 void Decoder::answer_feedback(const Call& call, GLint mode, const DispatchTable& gl) {
   if (call.id != CallId::RenderMode || (mode != GL_FEEDBACK && mode != GL_SELECT)) return;
   const bool feedback = mode == GL_FEEDBACK;
@@ -157,7 +157,7 @@ Decoded Decoder::make_and_answer(Call& call, const DispatchTable& gl) {
   if (maps && decoded.result != 0) {
     remember_answer(call, decoded.result, gl);
     call_answer_.outputs.push_back({AnsweredOutput::mapped, std::nullopt, std::move(contents)});
-    // So that the other end knows how much there is to map, with or without contents.
+    // Tells the sender how many bytes to map, with or without contents.
     call_answer_.result = answer_.mapped.bytes;
   }
   return decoded;

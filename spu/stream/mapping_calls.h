@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls about buffers that are mapped into the application's memory.
+// Calls for buffers that are mapped into the application's memory.
 #pragma once
 
 #include "dispatch/call_id.h"

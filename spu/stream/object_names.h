@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What objects of a stream are called here: a driver is free to give other names, locations and addresses than
-// it did when the stream was recorded.
+// Local names of a stream's objects: the driver may assign other names, locations and addresses than when the
+// stream was recorded.
 #pragma once
 
 #include <array>
@@ -15,21 +15,21 @@ namespace understudy::spu {
 
 class ObjectNames {
  public:
-  /// The name here of an object of the stream; the same when it was never answered, as with names that the
-  /// application chose.
+  /// Returns the local name of an object of the stream; unchanged if no call returned it, as with names that
+  /// the application chose.
   std::uint64_t here(ObjectKind kind, std::uint64_t there) const {
     const auto& names = names_[std::size_t(kind)];
     const auto found = names.find(there);
     return found == names.end() ? there : found->second;
   }
   void set(ObjectKind kind, std::uint64_t there, std::uint64_t here) {
-    // Display lists keep their names: glNewList takes any.
+    // Display lists keep their names, because glNewList accepts any name.
     if (kind != ObjectKind::none && kind != ObjectKind::display_list) names_[std::size_t(kind)][there] = here;
   }
 
   void forget(ObjectKind kind, std::uint64_t there) { names_[std::size_t(kind)].erase(there); }
 
-  /// Uniform locations belong to a program (its name here). Elements of an array follow its first one.
+  /// Uniform locations belong to a program (its local name). Elements of an array follow its first one.
   std::int32_t location_here(std::uint64_t program, std::int32_t there) const {
     const auto found = locations_.upper_bound({program, there});
     if (there < 0 || found == locations_.begin()) return there;
@@ -40,14 +40,14 @@ class ObjectNames {
     if (there >= 0) locations_[{program, there}] = here;
   }
 
-  /// A name for a sync object: the driver's are addresses.
+  /// Creates a name for a sync object, because the driver's names are addresses.
   std::uint64_t new_sync_name() { return ++sync_names_; }
 
-  /// Memory that a buffer is mapped to.
+  /// The memory of a mapped buffer.
   struct Mapping {
     std::byte* first = nullptr;
     std::size_t bytes = 0;
-    std::uint32_t buffer = 0;  ///< its name here
+    std::uint32_t buffer = 0;  ///< its local name
   };
   void set_mapping(std::uint64_t there, Mapping mapping) { mappings_[there] = mapping; }
   Mapping mapping(std::uint64_t there) const {
@@ -61,7 +61,7 @@ class ObjectNames {
   }
   void drop_all_mappings() { mappings_.clear(); }
 
-  std::uint64_t current_program = 0;  ///< the name here
+  std::uint64_t current_program = 0;  ///< the local name
 
  private:
   std::array<std::map<std::uint64_t, std::uint64_t>, std::size_t(ObjectKind::display_list) + 1> names_;

@@ -8,7 +8,7 @@
 namespace understudy::spu {
 namespace {
 
-/// No image that any OpenGL takes has more: sizes above are not computed with.
+/// Larger than any image that OpenGL accepts: larger sizes are rejected before they could overflow.
 constexpr std::uint64_t most_image_bytes = std::uint64_t(1) << 40;
 
 std::optional<std::size_t> components_of_format(GLenum format) {
@@ -56,8 +56,8 @@ std::optional<std::size_t> components_of_format(GLenum format) {
 }
 
 struct TypeSize {
-  std::size_t bytes;  ///< of a component, or of the whole pixel when packed
-  std::size_t swap;   ///< bytes that GL_UNPACK_SWAP_BYTES turns round
+  std::size_t bytes;  ///< of a component, or of the whole pixel if packed
+  std::size_t swap;   ///< number of bytes that GL_UNPACK_SWAP_BYTES reverses
   bool packed;
 };
 
@@ -103,12 +103,12 @@ std::optional<TypeSize> type_size(GLenum type) {
   }
 }
 
-/// Distances within an image, in bytes; `bits` when pixels are bits.
+/// Strides within an image, in bytes; `bits` if a pixel is one bit.
 struct Layout {
   std::uint64_t row = 0;         ///< used bytes of a row
   std::uint64_t row_step = 0;    ///< from row to row
   std::uint64_t image_step = 0;  ///< from image to image
-  std::uint64_t skip = 0;        ///< to the first pixel; for bits to its row
+  std::uint64_t skip = 0;        ///< to the first pixel; for bits, to its byte
   std::size_t swap = 1;
   bool bits = false;
 };
@@ -157,7 +157,7 @@ bool empty(const ImageShape& shape) {
   return shape.width <= 0 || shape.height <= 0 || shape.depth <= 0;
 }
 
-/// One row of bits, first pixel in the highest bit of the first byte.
+/// Copies one row of bits, so that the first pixel is in the highest bit of the first byte.
 void copy_bits(const std::byte* from, std::size_t first_bit, std::size_t width, bool lsb_first, std::byte* to) {
   for (std::size_t i = 0; i < width; ++i) {
     const std::size_t bit = first_bit + i;
@@ -167,7 +167,7 @@ void copy_bits(const std::byte* from, std::size_t first_bit, std::size_t width, 
   }
 }
 
-/// The other way; bits beside the row stay as they are.
+/// The reverse; bits outside the row are unchanged.
 void spread_bits(const std::byte* from, std::size_t first_bit, std::size_t width, bool lsb_first,
                  std::byte* to) {
   for (std::size_t i = 0; i < width; ++i) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How images lie in the application's memory (OpenGL 4.6, section 8.4.4), and the one way they lie in a
-// stream.
+// The layout of images in the application's memory (OpenGL 4.6, section 8.4.4), and the one layout in a stream.
 //
-// In a stream rows follow each other without gaps, components are in the byte order of the machine, bits start
-// with the highest: what GL_UNPACK_ALIGNMENT = 1 and zeros everywhere else describe.
+// In a stream, rows follow each other without gaps, components are in the machine's byte order, and bits start
+// with the highest: the layout of GL_UNPACK_ALIGNMENT = 1 and zeros for all other parameters.
 #pragma once
 
 #include <array>
@@ -32,7 +31,7 @@ struct PixelStore {
 
 inline constexpr PixelStore tight_pixels{.alignment = 1};
 
-/// The names of the fields in their order, for glGetIntegerv and glPixelStorei.
+/// The names of the fields in order, for glGetIntegerv and glPixelStorei.
 inline constexpr std::array<GLenum, 8> unpack_names = {
     GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST,   GL_UNPACK_ROW_LENGTH,  GL_UNPACK_IMAGE_HEIGHT,
     GL_UNPACK_SKIP_ROWS,  GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_IMAGES, GL_UNPACK_ALIGNMENT};
@@ -41,12 +40,12 @@ inline constexpr std::array<GLenum, 8> pack_names = {
     GL_PACK_SKIP_ROWS,  GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_IMAGES, GL_PACK_ALIGNMENT};
 
 PixelStore pixel_store(const DispatchTable& gl, const std::array<GLenum, 8>& names);
-/// Makes `wanted` of what is `now`.
+/// Changes the parameters from `now` to `wanted`.
 void set_pixel_store(const DispatchTable& gl, const std::array<GLenum, 8>& names, const PixelStore& now,
                      const PixelStore& wanted);
 
-/// What a command says of its image. `dimensions` of the command, not of the image: it decides which skips
-/// count.
+/// The image that a command specifies. `dimensions` are the command's, not the image's: they determine which
+/// skips apply.
 struct ImageShape {
   GLsizei width = 1;
   GLsizei height = 1;
@@ -56,20 +55,20 @@ struct ImageShape {
   int dimensions = 2;
 };
 
-/// Bytes of one pixel; nothing for formats and types that OpenGL does not know together, and for bits.
+/// Bytes of one pixel; nothing for combinations of format and type that OpenGL does not allow, and for bits.
 std::optional<std::size_t> pixel_bytes(GLenum format, GLenum type);
 
-/// Whether OpenGL knows the two together: it answers others with an error, and reads nothing.
+/// Whether OpenGL allows the combination: it rejects others with an error, and reads nothing.
 bool is_known_pixel(GLenum format, GLenum type);
 
-/// Bytes from the pointer that the application gives to the end of what is read or written under `store`;
-/// nothing when the format is not known or the size is beyond reason, 0 for an empty image.
+/// Bytes from the application's pointer to the end of what is read or written with `store`; nothing if the
+/// format is unknown or the size is unreasonable, 0 for an empty image.
 std::optional<std::size_t> image_extent(const ImageShape& shape, const PixelStore& store);
 
-/// The image as it lies in streams. `pixels` must hold image_extent(shape, store) bytes.
+/// Returns the image in the layout of streams. `pixels` must hold image_extent(shape, store) bytes.
 std::vector<std::byte> tight_image(const ImageShape& shape, const PixelStore& store, const std::byte* pixels);
 
-/// The other way: an image as it lies in streams to where the application wants it. `tight` holds
+/// The reverse: copies an image from the layout of streams to the application's layout. `tight` holds
 /// image_extent(shape, tight_pixels) bytes, `pixels` has room for image_extent(shape, store).
 void spread_image(const ImageShape& shape, const PixelStore& store, const std::byte* tight, std::byte* pixels);
 

@@ -8,7 +8,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Every argument is a value: the record's words are the call's.
+/// Whether every argument is a value, so that the record's words are the call's.
 bool only_values(const CallShape& shape) {
   return shape.plain_words == shape.parameter_count + 1;
 }
@@ -17,8 +17,9 @@ std::size_t array_bytes(const ParameterShape& parameter) {
   return value_size(parameter.type) * parameter.factor;
 }
 
-/// Copies a few values from an address, zeros up to a full word; only zeros from a null one. By four bytes:
-/// most arrays have just been written in such pieces, which a wider copy would have to wait for.
+/// Copies a few values from an address and pads with zeros to a full word; writes only zeros for a null
+/// address. In steps of four bytes: most arrays were just written in such pieces, and a wider load would wait
+/// for these stores.
 void copy_array(std::uint64_t address, std::size_t bytes, std::uint64_t* to) {
   const auto* from = reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(address));
   auto* written = reinterpret_cast<std::byte*>(to);
@@ -32,7 +33,7 @@ void copy_array(std::uint64_t address, std::size_t bytes, std::uint64_t* to) {
   for (; done < bytes; ++done) written[done] = from[done];
 }
 
-/// Arguments out of a record with arrays; false when an array is not there.
+/// Reads the arguments from a record with arrays; returns false if an array is missing.
 bool read_arguments(const Record& record, const CallShape& shape, std::uint64_t* words) {
   std::size_t p = 0;
   for (const ParameterShape& parameter : shape.parameters()) {

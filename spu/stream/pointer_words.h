@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pointer of the application's, as the word that a record keeps of it.
+// Converts an application's pointer to the word in a record, and back.
 #pragma once
 
 #include <cstddef>

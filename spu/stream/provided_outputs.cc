@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The decoder's part that gives calls of a stream from elsewhere memory of ours for their answers.
+// The part of the decoder that provides memory for the answers of calls in a stream from elsewhere.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,13 +17,13 @@
 namespace understudy::spu {
 namespace {
 
-/// Drivers write a whole value, also where the caller has room for none.
+/// Drivers write a whole value, even if the caller has room for none.
 constexpr std::size_t least_output_bytes = 8;
 
-/// Buffers for feedback, or for selection, of which the driver does not tell that it has let go.
+/// Limit for feedback or selection buffers that the driver may still use.
 constexpr std::size_t most_retained = 4;
 
-/// Answers that are as long as a buffer object.
+/// Whether the answer can be as long as a buffer object.
 bool reads_buffer(CallId call) {
   return std::string_view(call_name(call)).find("BufferSubData") != std::string_view::npos;
 }
@@ -40,8 +40,8 @@ std::size_t bytes_of_buffer(CallId call, const std::uint64_t* words, const Dispa
 
 }  // namespace
 
-/// Pixels that glReadPixels of a recorded stream reads. Where the sender wanted them does not matter here: they
-/// are read as images lie in streams.
+/// Executes glReadPixels of a recorded stream. Where the sender stored the pixels does not matter: they are
+/// read in the layout of streams.
 void Decoder::read_image(Call& call, std::size_t p, const DispatchTable& gl) {
   call.skip = true;
   if (call.id != CallId::ReadPixels) return;
@@ -92,7 +92,7 @@ std::string Decoder::provide_outputs(Call& call, const DispatchTable& gl) {
     if (parameters[p].pointer == 0 || parameters[p].input) continue;
     const bool null = call.kinds[p] == ReferenceKind::null;
     if (null && parameters[p].null_with == p) continue;
-    // No driver looks whether there is a place for pixels.
+    // Drivers do not check whether the pointer for pixels is null.
     if (null && parameters[p].rule == ExtentRule::image_out && !call.into_buffer) call.skip = true;
     if (call.skip) continue;
     if (std::string error = provide_output(call, p, gl); !error.empty()) return error;
@@ -100,7 +100,7 @@ std::string Decoder::provide_outputs(Call& call, const DispatchTable& gl) {
   return {};
 }
 
-/// The driver keeps one buffer of either kind: the one that it was given last and did not refuse.
+/// Frees buffers that the driver no longer uses. It keeps one of each kind: the last one that it accepted.
 void Decoder::forget_retained(CallId call, const DispatchTable& gl) {
   if (call != CallId::FeedbackBuffer && call != CallId::SelectBuffer) return;
   const bool feedback = call == CallId::FeedbackBuffer;

@@ -2,12 +2,13 @@
 // A record: one OpenGL call, or one event of the stream, as 8-byte words.
 //
 //     word 0        stable id of the call (low half), number of words of the record with this one (high half)
-//     words 1..n    one an argument: the value, or for pointers a reference (below)
-//     then          what references point at within the record
+//     words 1..n    one per argument: the value, or for pointers a reference (below)
+//     then          data that references within the record refer to
 //
-// Stable ids are made from names (dispatch/call_shape.h), never from positions. Bulky data stands apart, in the
-// payload of the block, so that a reader can walk the records without touching it. This is Chromium's packer
-// (Humphreys et al. 2002, section 4) with names instead of op-codes and lengths instead of trust.
+// Stable ids are hashed from names (dispatch/call_shape.h), not assigned by position. Large data is stored
+// separately, in the payload of the block, so that a reader can walk through the records without touching it.
+// This is Chromium's packer (Humphreys et al. 2002, section 4), but with names instead of op-codes, and with
+// checked lengths.
 #pragma once
 
 #include <algorithm>
@@ -22,22 +23,22 @@
 
 namespace understudy::spu {
 
-/// What the word of a pointer argument is: the kind in its highest byte, a value below.
+/// The word of a pointer argument: the kind in its highest byte, a value below.
 enum class ReferenceKind : std::uint8_t {
   null,     ///< a null pointer
-  inside,   ///< value: word of the record at which {bytes, data} stands
-  payload,  ///< value: word of the block's payload at which {bytes, data} stands
-  address,  ///< value: an offset into a buffer object, or an address that means something to the sender only
-  output,   ///< value: where the sender's process wants the answer
-  strings,  ///< as inside; data: for every string its length as a word, its bytes, a zero, up to a full word
-  lists,    ///< as inside; data: for every list {bytes, data}, each up to a full word
+  inside,   ///< value: position in the record of {bytes, data}, in words
+  payload,  ///< value: position in the block's payload of {bytes, data}, in words
+  address,  ///< value: an offset into a buffer object, or an address that is valid only for the sender
+  output,   ///< value: where the sender's process stores the answer
+  strings,  ///< as inside; data: for every string its length as a word, bytes, a zero, padding to a full word
+  lists,    ///< as inside; data: for every list {bytes, data}, each padded to a full word
 };
 
 struct Reference {
   ReferenceKind kind = ReferenceKind::null;
   std::uint64_t value = 0;
 
-  /// Addresses keep their low 56 bits, sign-extended: all that user space and buffer offsets ever use.
+  /// Addresses keep their low 56 bits, sign-extended, which covers all of user space and all buffer offsets.
   constexpr std::uint64_t word() const { return std::uint64_t(kind) << 56 | (value & 0x00ff'ffff'ffff'ffffU); }
   static constexpr Reference from(std::uint64_t word) {
     const auto value = std::uint64_t(std::int64_t(word << 8) >> 8);
@@ -45,7 +46,7 @@ struct Reference {
   }
 };
 
-/// FNV-1a: the id of a call or event by its name.
+/// FNV-1a hash of a name: the id of a call or event.
 constexpr std::uint32_t stable_id_of(std::string_view name) {
   std::uint32_t id = 0x811c9dc5U;
   for (const char c : name) id = (id ^ std::uint8_t(c)) * 0x01000193U;
@@ -56,10 +57,10 @@ constexpr std::size_t words_for(std::size_t bytes) {
   return (bytes + 7) / 8;
 }
 
-/// Data of at least so many bytes goes to the payload.
+/// Data of at least this many bytes goes to the payload.
 constexpr std::size_t payload_threshold = 1024;
 
-/// Words that grow at the end as a vector's do, but are not set to zero before they are written.
+/// Words that grow at the end like a vector, but are not zeroed before they are written.
 class Words {
  public:
   Words() = default;
@@ -70,14 +71,14 @@ class Words {
     size_ = std::exchange(other.size_, 0);
     return *this;
   }
-  /// Adds `count` words, whatever they hold; valid until more are added.
+  /// Adds `count` uninitialised words; the pointer is valid until more are added.
   std::uint64_t* extend(std::size_t count) {
     if (room_ - size_ < count) grow(std::max(2 * room_, size_ + count));
     std::uint64_t* const added = memory_.get() + size_;
     size_ += count;
     return added;
   }
-  /// Adds {bytes, data}, zeros up to a full word.
+  /// Adds {bytes, data}, padded with zeros to a full word.
   void append_data(std::span<const std::byte> bytes) {
     *extend(1) = bytes.size();
     append_bytes(bytes, words_for(bytes.size()));
@@ -97,7 +98,7 @@ class Words {
   std::size_t size() const { return size_; }
   std::span<const std::uint64_t> words() const { return {memory_.get(), size_}; }
   void clear() { size_ = 0; }
-  /// Takes away what was added after there were `size` words.
+  /// Removes everything after the first `size` words.
   void rewind(std::size_t size) { size_ = size; }
 
  private:
@@ -113,18 +114,18 @@ class Words {
   std::size_t size_ = 0;
 };
 
-/// Records in the order of their calls, and their payload. Growing again after `clear` allocates nothing.
+/// Records in the order of their calls, and their payload. Growing again after `clear` allocates no memory.
 class Records {
  public:
   Records() = default;
-  /// Without a payload everything stays in the records, so that they can be moved.
+  /// Without a payload, all data stays in the records, so that they can be moved.
   static Records without_payload() {
     Records records;
     records.threshold_ = ~std::size_t(0);
     return records;
   }
 
-  /// Starts a record; the words that follow belong to it until the next one starts.
+  /// Starts a record; the following words belong to it until the next one starts.
   void begin(std::uint32_t id) { append_record(id, 1); }
   void append(std::uint64_t word) {
     *words_.extend(1) = word;
@@ -133,24 +134,24 @@ class Records {
   /// A record whose arguments are all values.
   void append_plain(std::uint32_t id, std::span<const std::uint64_t> arguments) {
     std::uint64_t* const record = append_record(id, arguments.size() + 1);
-    // A loop: the arguments have just been written one by one, which a wide copy would have to wait for.
+    // A loop, because the arguments were just written one by one, and a wide load would wait for these stores.
     for (std::size_t i = 0; i < arguments.size(); ++i) record[i + 1] = arguments[i];
   }
-  /// A record of so many words, all of which but the header are to be set before the next one starts.
+  /// Adds a record of `words` words, all of which except the header must be set before the next one starts.
   std::uint64_t* append_record(std::uint32_t id, std::size_t words) {
     start_ = words_.size();
     std::uint64_t* const record = words_.extend(words);
     record[0] = id | std::uint64_t(words) << 32;
     return record;
   }
-  /// Leaves room for `count` words, to be set later by their number within the record.
+  /// Reserves `count` words, to be set later by their position within the record.
   void reserve(std::size_t count) {
     std::fill_n(words_.extend(count), count, 0);
     close();
   }
   void set(std::size_t word_of_record, std::uint64_t value) { words_.data()[start_ + word_of_record] = value; }
 
-  /// Copies `bytes` into the record or, when there are many, into the payload.
+  /// Copies `bytes` into the record or, if there are many, into the payload.
   Reference attach(std::span<const std::byte> bytes) {
     if (bytes.size() >= threshold_) {
       const Reference reference{ReferenceKind::payload, payload_.size()};
@@ -162,7 +163,7 @@ class Records {
     close();
     return reference;
   }
-  /// Data of kind strings or lists: the caller appends its words.
+  /// Starts data of kind strings or lists, whose words the caller appends.
   Reference begin_inside(ReferenceKind kind) {
     const Reference reference{kind, words_.size() - start_};
     append(0);
@@ -176,7 +177,7 @@ class Records {
     close();
   }
 
-  /// Puts records without payload before the record at word `position`.
+  /// Inserts records without payload before the record at word `position`.
   void insert(std::size_t position, const Records& other) {
     words_.insert(position, other.words_);
     start_ += other.words_.size();
@@ -191,9 +192,9 @@ class Records {
     start_ = 0;
     ++generation_;
   }
-  /// Takes away the records without payload that were added after there were `words` words.
+  /// Removes the records, which must have no payload, after the first `words` words.
   void rewind(std::size_t words) { words_.rewind(words); }
-  /// Changes whenever the records are cleared: positions from before mean nothing any more.
+  /// Changes whenever the records are cleared, which invalidates earlier positions.
   std::uint64_t generation() const { return generation_; }
 
  private:
@@ -209,14 +210,14 @@ class Records {
   std::size_t threshold_ = payload_threshold;
 };
 
-/// One record as read; `words` includes the header.
+/// A record that is read; `words` includes the header.
 struct Record {
   std::uint32_t id = 0;
   std::span<const std::uint64_t> words;
   std::span<const std::uint64_t> payload;  ///< of its block
 
   std::span<const std::uint64_t> arguments() const { return words.subspan(1); }
-  /// The bytes that `word` refers to; nothing when it is not a reference to bytes that are there.
+  /// The bytes that `word` refers to; nothing if it is not a reference to data that exists.
   std::optional<std::span<const std::byte>> bytes(std::uint64_t word) const {
     const Reference reference = Reference::from(word);
     const bool apart = reference.kind == ReferenceKind::payload;
@@ -232,7 +233,7 @@ struct Record {
   }
 };
 
-/// The record that starts at `words[position]`, or nothing when its length is not to be believed.
+/// The record that starts at `words[position]`; nothing if its length is invalid.
 inline std::optional<Record> record_at(std::span<const std::uint64_t> words, std::size_t position,
                                        std::span<const std::uint64_t> payload) {
   if (position >= words.size()) return std::nullopt;

@@ -16,7 +16,7 @@
 namespace understudy::spu {
 namespace {
 
-/// zstd's fast side: writing a trace must not slow the viewer more than its calls do.
+/// A fast level of zstd: writing a trace must not slow down the viewer more than its calls do.
 constexpr int compression_level = 3;
 
 constexpr std::size_t file_header_bytes = 32;
@@ -26,8 +26,7 @@ struct StreamDeleter {
   void operator()(ZSTD_CStream* stream) const { ZSTD_freeCStream(stream); }
 };
 
-/// Unpacks `compressed` into exactly `words` words; memory grows with what comes out, never with what is
-/// claimed.
+/// Decompresses into exactly `words` words; memory grows with the output, not with the size in the header.
 std::vector<std::uint64_t> unpacked(std::span<const std::byte> compressed, std::uint64_t words) {
   const std::unique_ptr<ZSTD_DStream, StreamDeleter> stream(ZSTD_createDStream());
   std::vector<std::uint64_t> result;
@@ -108,7 +107,7 @@ void TraceWriter::write(const Records& records, std::uint32_t frames) {
     if (step < 0 && errno == EINTR) continue;
     if (step <= 0) {
       const int error = errno;
-      // What is there of the block is taken back, so that the file ends well.
+      // The incomplete block is removed, so that the file ends with a complete one.
       if (::ftruncate(file_, off_t(bytes_)) == 0) ::lseek(file_, off_t(bytes_), SEEK_SET);
       throw std::system_error(error, std::generic_category(), name_ + " cannot be written further");
     }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams kept in files.
+// Streams stored in files.
 //
 //     file header    32 bytes: "UNDERSTUDY-TRACE", version, 12 bytes zero
 //     block header   64 bytes: BlockHeader
 //     block          one zstd frame: the records' words, then the payload's words
 //     ...
 //
-// A block is whole frames where frames are small enough. A file that was cut off is readable up to its last
-// whole block. All numbers are little-endian; every version that was ever written stays readable.
+// If frames are small, a block consists of whole frames. A truncated file is readable up to its last complete
+// block. All numbers are little-endian; every version that was ever written stays readable.
 #pragma once
 
 #include <cstddef>
@@ -32,8 +32,8 @@ struct BlockHeader {
   static constexpr std::uint32_t right_magic = stable_id_of("understudy.block");
 
   std::uint32_t magic = right_magic;
-  std::uint32_t frames = 0;  ///< that end within the block
-  std::uint64_t number = 0;  ///< from 0, so that a missing block is noticed
+  std::uint32_t frames = 0;  ///< that end in the block
+  std::uint64_t number = 0;  ///< from 0, to detect missing blocks
   std::uint64_t record_words = 0;
   std::uint64_t payload_words = 0;
   std::uint64_t compressed_bytes = 0;
@@ -41,10 +41,10 @@ struct BlockHeader {
   std::uint64_t reserved[2] = {};
 };
 static_assert(sizeof(BlockHeader) == 64);
-/// What belongs into `checksum`.
+/// The value of `checksum`.
 std::uint64_t header_checksum(const BlockHeader& header);
 
-/// What a block may claim to unpack to; a reader takes no more memory than really comes out.
+/// Limit for the unpacked size in a header; a reader allocates only as much as is really unpacked.
 constexpr std::uint64_t most_block_words = std::uint64_t(1) << 29;
 
 struct Block {
@@ -60,14 +60,14 @@ std::string in_block(const Block& block, std::string_view what);
 
 class TraceWriter {
  public:
-  /// Creates the file; one that exists is replaced. Throws std::system_error.
+  /// Creates or replaces the file. Throws std::system_error.
   explicit TraceWriter(const std::filesystem::path& path);
   ~TraceWriter();
   TraceWriter(const TraceWriter&) = delete;
   TraceWriter& operator=(const TraceWriter&) = delete;
 
-  /// Appends the records as one block. Throws std::system_error when the disk is full; the file then ends with
-  /// its last whole block.
+  /// Appends the records as one block. Throws std::system_error if the disk is full; the file then ends with
+  /// its last complete block.
   void write(const Records& records, std::uint32_t frames);
 
   std::uint64_t bytes() const { return bytes_; }
@@ -82,15 +82,15 @@ class TraceWriter {
 
 class TraceReader {
  public:
-  /// Throws std::runtime_error when the file cannot be read or is no trace of a version known here.
+  /// Throws std::runtime_error if the file cannot be read or is not a trace of a known version.
   explicit TraceReader(const std::filesystem::path& path);
-  /// A trace in memory, which must outlive the reader.
+  /// Reads a trace in memory, which must outlive the reader.
   explicit TraceReader(std::span<const std::byte> file);
   ~TraceReader();
 
-  /// The next block; nothing at the end. Throws std::runtime_error naming block and offset when it is damaged.
+  /// Returns the next block; nothing at the end. Throws std::runtime_error with number and offset if damaged.
   std::optional<Block> next();
-  /// The file ends within a block: everything before was read.
+  /// Whether the file ends within a block; everything before it was read.
   bool cut_off() const { return cut_off_; }
 
  private:

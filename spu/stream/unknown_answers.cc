@@ -7,7 +7,7 @@
 namespace understudy::spu {
 namespace {
 
-/// More than any state of OpenGL has values.
+/// Larger than any state of OpenGL.
 constexpr std::size_t most_state_bytes = std::size_t(64) * 1024;
 /// A surface of 64 by 64 control points of four doubles.
 constexpr std::size_t most_map_bytes = std::size_t(64) * 64 * 4 * sizeof(double);
@@ -27,7 +27,7 @@ std::size_t assembly_text_bytes(CallId call, const std::uint64_t* words, const D
   return positive(length) + 1;
 }
 
-/// A block, or a buffer of counters, has no more members than its program has uniforms.
+/// A uniform block, or a buffer of counters, has at most as many members as its program has uniforms.
 std::size_t uniform_list_bytes(GLuint program, const DispatchTable& gl) {
   GLint uniforms = 0;
   gl.GetProgramiv(program, GL_ACTIVE_UNIFORMS, &uniforms);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory for answers whose extent the registry does not tell.
+// Memory for answers whose extent the registry does not specify.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace understudy::spu {
 
-/// Bytes that the call writes at most through an argument of rule `unknown`. Asks `gl` where the answer is as
-/// long as something that the sender has made.
+/// Returns the maximum number of bytes that the call writes through an argument of rule `unknown`. Queries `gl`
+/// if the length depends on an object of the sender.
 std::size_t room_for_answer(CallId call, const std::uint64_t* words, const DispatchTable& gl);
 
 }  // namespace understudy::spu

@@ -19,7 +19,7 @@ struct Drawn {
   }
 };
 
-/// A tile worker draws for one application, whose contexts may share display lists.
+/// Shared by all contexts: a tile worker draws for one application, whose contexts may share display lists.
 struct CompiledCalls {
   explicit CompiledCalls(const std::string&) {}
   std::atomic<bool> touch_scissor = false;

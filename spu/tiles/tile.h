@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tile unit, of a tile worker: its process draws one tile of each window, and is played the stream by the
-// one that has the application (tiles.h).
+// The tile unit, used by tile workers: the process draws one tile of each window, and plays the stream that it
+// gets from the process which serves the application (tiles.h).
 #pragma once
 
 #include <atomic>
@@ -22,9 +22,9 @@ class Tile final : public Unit {
   const char* tag_address() const override { return &tag; }
   void fill(Phase phase, DispatchTable& table) override;
 
-  /// The context is current with a drawable of this extent. To be called with every change.
+  /// The context is current with a drawable of this extent. Must be called after every change of either.
   void place(Extent2D extent);
-  /// Of the current drawable.
+  /// The rows of this tile in the current drawable.
   Rows rows() const { return rows_of_tile(extent_.height, part_, parts_); }
   Extent2D extent() const { return extent_; }
 
@@ -37,8 +37,8 @@ class Tile final : public Unit {
   TileScissor scissor_;
   Extent2D extent_;
   bool placed_ = false;
-  bool divides_ = false;     ///< tiles.h says when
-  bool restricted_ = false;  ///< from glBegin to glEnd
+  bool divides_ = false;     ///< result of window_divides()
+  bool restricted_ = false;  ///< true while a draw is restricted, also from glBegin to glEnd
   BeginAndEnd begin_and_end_;
 };
 

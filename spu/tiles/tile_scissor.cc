@@ -13,12 +13,12 @@ namespace {
 enum class Effect : std::uint8_t {
   none,
   box,         ///< sets the box of all viewports
-  capability,  ///< enables or disables, with the capability first
-  indexed,     ///< of one viewport
+  capability,  ///< enables or disables the capability in the first argument
+  indexed,     ///< affects one viewport
   indexed_capability,
   pushes,
   pops,
-  binds,  ///< chooses the framebuffer
+  binds,  ///< changes the bound framebuffer
   begins_list,
   ends_list,
   calls_list,
@@ -73,7 +73,7 @@ void TileScissor::note(CallId call, const std::uint64_t* words) {
     pushed_in_list_ = 0;
   } else if (effect == Effect::ends_list) {
     compiling_ = false;
-    // What such a list leaves pushed would be the tile's scissor test.
+    // State that such a list leaves pushed would include the tile's scissor test.
     if (pushed_in_list_ > 0) lists_touch_scissor_ = true;
   } else if (compiling_) {
     note_compiled(call, words);
@@ -83,7 +83,7 @@ void TileScissor::note(CallId call, const std::uint64_t* words) {
               (effect == Effect::indexed_capability && GLenum(words[0]) == GL_SCISSOR_TEST);
 }
 
-/// A list that changes the scissor test cannot have it changed around itself.
+/// If a list changes the scissor test, a tile's scissor test must not be set around it.
 void TileScissor::note_compiled(CallId call, const std::uint64_t* words) {
   switch (effect_of(call)) {
     case Effect::capability:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps what is drawn into a window within a tile of its rows, by the scissor test, which nobody sees changed:
-// it is set before a draw and put back after it.
+// Restricts drawing into a window to the rows of a tile by the scissor test, unnoticed by the application: the
+// test is set before a draw and restored after it.
 //
-// Pixels outside the tile are nobody's concern: a draw that cannot be kept within it is drawn whole.
+// Pixels outside the tile are never used, so a draw that cannot be restricted is drawn whole.
 #pragma once
 
 #include <array>
@@ -14,35 +14,36 @@
 
 namespace understudy::spu {
 
-/// Rows of a window, from the bottom as OpenGL counts them.
+/// Rows of a window, counted from the bottom as in OpenGL.
 struct Rows {
   int first = 0;
   int count = 0;
   bool operator==(const Rows&) const = default;
 };
 
-/// Those of part `part` of `parts`: together they are all rows, and differ by one row at most.
+/// The rows of tile `part` of `parts`: the tiles cover all rows, and their heights differ by at most one row.
 Rows rows_of_tile(int height, int part, int parts);
 
 class TileScissor {
  public:
-  /// Whether a display list changes the scissor test is known to all contexts, as they may share lists.
+  /// The flag, which contexts that may share lists share, records whether a list changes the scissor test.
   explicit TileScissor(std::atomic<bool>& lists_touch_scissor) : lists_touch_scissor_(lists_touch_scissor) {}
 
-  /// The window has another size, or a context is current again. Rows of count 0: nothing is drawn into it.
+  /// Must be called when the window's size changes and when a context becomes current. 0 rows: draws nothing.
   void set(int width, Rows rows);
-  /// Before each call, for what changes the scissor test and what draws are drawn into.
+  /// Must be called before each call: tracks changes of the scissor test and of the framebuffer for drawing.
   void note(CallId call, const std::uint64_t* words);
-  /// Between glNewList and glEndList: calls are compiled, and the scissor test would be, too.
+  /// Whether a display list is being compiled: changes of the scissor test would be compiled into it.
   bool compiling() const { return compiling_; }
-  /// Viewports have scissor boxes of their own.
+  /// Whether viewports have scissor boxes of their own.
   bool indexed() const { return indexed_; }
 
-  /// Before a draw; false when it is drawn whole, as into framebuffer objects. `lists`: it calls display lists.
+  /// Must be called before a draw. Returns false if it is drawn whole, as into framebuffer objects. `lists`:
+  /// the call executes display lists.
   bool begin(const DispatchTable& gl, bool lists);
-  /// After a draw for which begin() was true.
+  /// Must be called after a draw for which begin() returned true.
   void end(const DispatchTable& gl) const;
-  /// After display lists, which may have changed anything.
+  /// Must be called after display lists, which may have changed any state.
   void forget() { known_ = false; }
 
  private:
@@ -53,13 +54,13 @@ class TileScissor {
   std::atomic<bool>& lists_touch_scissor_;
   int width_ = 0;
   Rows rows_;
-  bool known_ = false;  ///< what follows is what the application has set
+  bool known_ = false;  ///< the following members match the application's state
   bool window_ = false;
   bool enabled_ = false;
   Box box_{};
   bool compiling_ = false;
   int pushed_in_list_ = 0;
-  bool indexed_ = false;  ///< there are scissor boxes by viewport
+  bool indexed_ = false;  ///< scissor boxes were set per viewport
 };
 
 }  // namespace understudy::spu

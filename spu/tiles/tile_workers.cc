@@ -23,7 +23,7 @@ using compositor::MalformedMessage;
 using compositor::Message;
 namespace limits = compositor::limits;
 
-/// TileWorkers are to be at work while the application still calls.
+/// Records are sent in portions, so that tile workers draw while the application still makes calls.
 constexpr std::size_t many_words = 4096;
 
 }  // namespace
@@ -56,7 +56,7 @@ void TileWorkers::gather(int parts) {
                               until);
       workers_.push_back(std::move(worker));
     }
-    // They start at the same time.
+    // The tile workers start in parallel.
     for (const auto& worker : workers_) {
       const Message accepted = worker->connection.receive(Clock::now() + limits::server_patience);
       if (accepted.type == compositor::LauncherMessage::refused)
@@ -138,7 +138,7 @@ void TileWorkers::give_up(const char* why) {
   let_go_if_unused();
 }
 
-/// Of what is still drawn in tiles they have a part.
+/// Windows that are still divided depend on the tile workers.
 void TileWorkers::let_go_if_unused() {
   if (in_tiles_ > 0 || given_up_ == nullptr) return;
   workers_.clear();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The processes that draw the other tiles: GL servers (apps/understudy/gl_server/gl_server.h) which are played
-// the same stream by the one that has the application. All contexts of the process use them.
+// The processes that draw the other tiles: GL servers (apps/understudy/gl_server/gl_server.h) that get the same
+// stream from the process which serves the application. Shared by all contexts of that process.
 #pragma once
 
 #include <atomic>
@@ -17,12 +17,12 @@
 
 namespace understudy::spu {
 
-/// Of one image, with the process that has the application.
+/// Limit for the tiles of an image, including the one of the process that serves the application.
 constexpr int most_tiles = 16;
 
-/// What a process says of itself in its hello to be a tile worker and no application.
+/// What a process sends in its hello to start a tile worker instead of serving an application.
 struct TilePlace {
-  int part = 0;  ///< from 1: tile 0 is the application's GL server's
+  int part = 0;  ///< from 1: tile 0 belongs to the GL server of the application
   int parts = 1;
 };
 std::vector<std::byte> encode(const TilePlace& place);
@@ -31,31 +31,33 @@ TilePlace decode_tile_place(std::span<const std::byte> payload);
 
 class TileWorkers {
  public:
-  /// `socket`: where GL servers are asked for; every connection there is a tile worker of its own.
+  /// `socket`: where GL servers are requested; every connection to it is a separate tile worker.
   explicit TileWorkers(std::string socket) : socket_(std::move(socket)) {}
 
-  /// Has `parts` - 1 tile workers there, once. When they cannot be had that is said, and there are none.
+  /// Starts `parts` - 1 tile workers, on the first call only. If that fails, it is logged and there are none.
   void gather(int parts);
-  /// TileWorkers are there, and all have taken everything so far.
+  /// Whether there are tile workers; all of them have received all records so far.
   bool here() const { return !workers_.empty(); }
   int count() const { return int(workers_.size()); }
 
-  /// For records that all of them play next.
+  /// Records that all tile workers will play next.
   Records& records() { return records_; }
-  /// Records are sent when there are many, or now.
+  /// Sends the records if there are many, or if `now`.
   void hand_on(bool now);
 
-  /// Has tile worker `index`, from 0, play `records` behind all that was handed on, and answer the last one.
+  /// Lets tile worker `index`, from 0, play `records` after everything that was sent before, and answer the
+  /// last one.
   void ask(int index, const Records& records);
-  /// What it answered; waits. Nothing when tile workers are gone.
+  /// Waits for that answer and returns it; empty if the tile workers are lost.
   CallAnswer answer(int index);
 
-  /// Contexts whose windows are in tiles. When that has been given up, the last one lets the tile workers go.
+  /// Counts contexts whose windows are divided into tiles. After tiles were given up, the last one to end
+  /// releases the tile workers.
   void begin_tiles() { ++in_tiles_; }
   void end_tiles();
-  /// Why no window is to be in tiles from now on; null: they may.
+  /// Why windows are not divided into tiles any more; null if they are.
   const char* given_up() const { return given_up_; }
-  /// `why` stays for ever.
+  /// `why` must stay valid forever.
   void give_up(const char* why);
 
   std::atomic<bool>& lists_touch_scissor() { return lists_touch_scissor_; }

@@ -20,9 +20,9 @@
 namespace understudy::spu {
 namespace {
 
-/// Windows are made whole so often before it is cheaper to have one process draw them.
+/// If a window is completed more often than this, it is cheaper to let one process draw it.
 constexpr int most_copies = 16;
-/// Of one answer of a tile worker: what it reads for a stream from elsewhere is limited (stream/decode.h).
+/// Limit for one read of a tile worker, below its limit for streams from elsewhere (stream/decode.h).
 constexpr std::size_t most_read_bytes = std::size_t(32) << 20;
 
 struct Divided {
@@ -31,7 +31,7 @@ struct Divided {
   }
 };
 
-/// 0 for what the window does not have.
+/// 0 for an attachment that the window lacks.
 GLint ask_of_window(const DispatchTable& gl, GLenum attachment, GLenum name) {
   GLint value = 0;
   gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE,
@@ -61,7 +61,7 @@ constexpr UnitOption tiles_options[] = {
 }  // namespace
 
 bool window_divides(const DispatchTable& gl) {
-  // Older ones do not know the questions, and would tell the application of the error.
+  // Older versions do not support these queries and would raise an error that the application sees.
   const auto* version = reinterpret_cast<const char*>(gl.GetString(GL_VERSION));
   if (version == nullptr || std::atof(version) < 3 || state_value(gl, GL_DRAW_FRAMEBUFFER_BINDING) != 0 ||
       state_value(gl, GL_SAMPLES) > 0)
@@ -71,7 +71,8 @@ bool window_divides(const DispatchTable& gl) {
                                GL_FRAMEBUFFER_ATTACHMENT_BLUE_SIZE, GL_FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE}) {
     if (ask_of_window(gl, colour, channel) > 8) return false;
   }
-  // Windows become whole by way of textures, which have such a depth (window_system/shown_image.h).
+  // Windows are completed by way of textures, which support only these depth formats
+  // (window_system/shown_image.h).
   const std::pair bits = depth_and_stencil_bits(gl);
   return bits == std::pair{0, 0} || bits == std::pair{24, 8};
 }
@@ -135,7 +136,7 @@ void Tiles::abandon() {
 std::uint64_t Tiles::call(CallId call, const std::uint64_t* words) {
   const DispatchTable& next = chain_.below(*this);
   if (!workers_.here()) {
-    // A tile worker was lost just now.
+    // A tile worker has just been lost.
     stop_dividing();
     return invoke(next, call, words);
   }
@@ -143,7 +144,7 @@ std::uint64_t Tiles::call(CallId call, const std::uint64_t* words) {
   const WindowUse use = window_use(call);
   if (use == WindowUse::reads || use == WindowUse::asks) return read(call, words);
   if (use == WindowUse::pushes) {
-    // TileWorkers are to draw while this process does.
+    // The tile workers should draw at the same time as this process.
     recorder_.before(CallId::Flush, words, workers_.records());
     workers_.hand_on(true);
     return invoke(next, call, words);
@@ -182,7 +183,7 @@ std::uint64_t Tiles::make(CallId call, const std::uint64_t* words, bool restrict
   return result;
 }
 
-/// Pixels of a window that the call would move, or that later calls find where it puts them.
+/// Whether the call copies pixels of a window, to another place or to where later calls use them.
 bool Tiles::copies_window(CallId call, const std::uint64_t* words) const {
   const WindowUse use = window_use(call);
   if (use != WindowUse::copies && use != WindowUse::blits) return false;
@@ -190,7 +191,7 @@ bool Tiles::copies_window(CallId call, const std::uint64_t* words) const {
   return state_value(chain_.driver(), GL_READ_FRAMEBUFFER_BINDING) == 0;
 }
 
-/// Answers stay in this process, unless they go to a buffer object, where later calls find them.
+/// Makes a query. Answers stay in this process, unless they go to a buffer object, where later calls use them.
 std::uint64_t Tiles::read(CallId call, const std::uint64_t* words) {
   const DispatchTable& next = chain_.below(*this);
   const bool pixels = window_use(call) == WindowUse::reads;
@@ -227,7 +228,7 @@ void Tiles::fetch_rows(CallId call, const std::uint64_t* words) {
   const std::int64_t at_once = std::max<std::int64_t>(std::int64_t(most_read_bytes / row_bytes), 1);
   const std::int64_t bottom = GLint(words[1]);
   const std::int64_t top = bottom + image.height;
-  // Rows of a tile worker's tile that are wanted, but the `done` first ones.
+  // The requested rows of a tile worker's tile, without the first `done` ones.
   const auto part_of = [&](int worker, std::int64_t done) {
     const Rows rows = rows_of_tile(extent_.height, worker + 1, parts_);
     const std::int64_t first = std::max<std::int64_t>(rows.first, bottom) + done;
@@ -253,7 +254,7 @@ void Tiles::fetch_rows(CallId call, const std::uint64_t* words) {
       const CallAnswer answer = workers_.answer(worker);
       ImageShape part = image;
       part.height = rows.count;
-      // A format that OpenGL refuses has no answer, here or there.
+      // A format that OpenGL rejects has no answer in any process.
       if (answer.outputs.empty() || answer.outputs[0].bytes.size() != image_extent(part, tight_pixels))
         continue;
       PixelStore above = store;
@@ -265,9 +266,9 @@ void Tiles::fetch_rows(CallId call, const std::uint64_t* words) {
 
 void Tiles::make_whole() {
   making_whole_ = true;
-  // What these calls read is put together, and what they draw is drawn by all.
+  // These calls go through this unit: reads are assembled from tiles, and draws are made by all processes.
   const DispatchTable& all = chain_.face(*this, chain_.phase());
-  // Otherwise it would be switched off for one viewport alone, after which the boxes are not all the same.
+  // With indexed scissor boxes, the test could be disabled for one viewport only, leaving the boxes unequal.
   const bool tested = !scissor_.indexed() && all.IsEnabled(GL_SCISSOR_TEST) != GL_FALSE;
   if (tested) all.Disable(GL_SCISSOR_TEST);
   set_window_contents(all, window_contents(all, extent_, has_depth_));
@@ -285,7 +286,7 @@ void Tiles::make_whole_for_copy() {
   }
 }
 
-/// What this process lacks of its window is brought here, and from then on it draws all of it.
+/// Completes the window in this process, which draws all of it from then on.
 void Tiles::stop_dividing() {
   if (divided_ && workers_.here()) make_whole();
   if (std::exchange(divided_, false)) workers_.end_tiles();
@@ -314,7 +315,7 @@ std::vector<std::uint8_t> Tiles::shown_image() {
     std::memcpy(pixels.data() + first, bytes.data(),
                 std::min(bytes.size(), row_bytes * std::size_t(rows.count)));
   }
-  // A tile worker was lost: the other rows are at least what this process has.
+  // A tile worker was lost: then the window's contents in this process are the best available.
   if (!workers_.here()) return spu::shown_image(next, extent_);
   process_counters().tiles.frames.fetch_add(1, std::memory_order_relaxed);
   return pixels;

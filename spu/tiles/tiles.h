@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tiles unit, of the process that has the application: every call that reaches it, from the application
-// and from the units above, is also played by tile workers (tile_workers.h), and of a window each process draws
-// the rows of its tile alone (Humphreys et al. 2002, section 5: sort-first with a tile for each server).
+// The tiles unit of the GL server that serves the application. Every call that reaches it, from the application
+// and from the units above, is also played by tile workers (tile_workers.h), and each process draws only the
+// rows of its tile of a window (Humphreys et al. 2002, section 5: sort-first with one tile per server).
 //
-// Framebuffer objects are drawn whole by all, as anybody's texture may be their contents. What is read from a
-// window is put together from the tiles; before pixels of a window are copied, all processes make it whole. An
-// application that does what cannot be put together, or copies all the time, is drawn by this process alone
-// from then on: the window that is current is made whole, another one of the same context when it is drawn
+// Framebuffer objects are drawn whole by all processes, because their contents may be used as textures. Pixels
+// that are read from a window are assembled from the tiles; before pixels of a window are copied, all processes
+// complete it. If an application does something that cannot be assembled, or copies all the time, this process
+// draws alone from then on: the current window is completed at once, another window of the same context when it
+// is drawn next.
+//
 // again.
 #pragma once
 
@@ -22,8 +24,8 @@
 
 namespace understudy::spu {
 
-/// Whether the window of the current context, which has just been made, can be put together from tiles: one
-/// sample a pixel, 8 bits a channel, and a depth that can be copied.
+/// Whether the window of the current context, which has just been created, can be assembled from tiles: one
+/// sample per pixel, 8 bits per channel, and a depth format that can be copied.
 bool window_divides(const DispatchTable& gl);
 
 class Tiles final : public Unit {
@@ -37,13 +39,13 @@ class Tiles final : public Unit {
   void left() override;
   void abandon() override;
 
-  // What whoever plays the stream tells of its contexts, which no call tells.
+  // Called by the player of the stream, for what it knows of contexts beyond their calls.
 
   /// The words of the `context` event.
   void introduce(std::span<const std::uint64_t> words);
-  /// The context is current with this drawable. To be called with every change of either.
+  /// The context is current with this drawable. Must be called after every change of either.
   void place(std::uint64_t drawable, Extent2D extent);
-  /// What the window shows, rows from the bottom, RGBA. The context is current.
+  /// Returns what the window shows, rows from the bottom, RGBA. The context is current.
   std::vector<std::uint8_t> shown_image();
 
   std::uint64_t call(CallId call, const std::uint64_t* words);
@@ -68,10 +70,10 @@ class Tiles final : public Unit {
   std::uint64_t drawable_ = 0;
   Extent2D extent_;
   bool placed_ = false;
-  bool divided_ = false;  ///< every process draws its tile of the window
+  bool divided_ = false;  ///< every process draws only its tile of the window
   bool has_depth_ = false;
-  bool making_whole_ = false;  ///< the calls of make_whole() are being made
-  bool restricted_ = false;    ///< from glBegin to glEnd
+  bool making_whole_ = false;  ///< make_whole() is running
+  bool restricted_ = false;    ///< true while a draw is restricted, also from glBegin to glEnd
   int copies_ = 0;
   std::uint64_t frames_ = 0;
 };

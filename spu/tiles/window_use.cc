@@ -11,7 +11,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Of textures and images, which mean something in one process alone.
+/// Whether the call concerns handles of textures or images, which are valid in one process only.
 bool gives_handles(std::string_view name) {
   return name.find("TextureHandle") != std::string_view::npos ||
          name.find("TextureSamplerHandle") != std::string_view::npos ||
@@ -21,9 +21,9 @@ bool gives_handles(std::string_view name) {
 WindowUse find_use(CallId call) {
   const std::string_view name = call_name(call);
   if (name == "glFlush" || name == "glFinish") return WindowUse::pushes;
-  // Of another framebuffer than the one that is drawn into: whole.
+  // Clears a framebuffer that need not be the bound one: drawn whole.
   if (name.starts_with("glClearNamedFramebuffer")) return WindowUse::none;
-  // They look like questions, and later calls speak of what they answer.
+  // Their names are those of queries, but later calls refer to their answers.
   if (gives_handles(name)) return WindowUse::none;
   if (name == "glBitmap" || name.starts_with("glDrawTex")) return WindowUse::draws;
   if (name.starts_with("glReadPixels") || name.starts_with("glReadnPixels")) return WindowUse::reads;
@@ -55,7 +55,7 @@ std::array<WindowUse, call_count> all_uses() {
   return uses;
 }
 
-/// Calls of which some need a look at their arguments.
+/// Calls that may prevent tiles, some of them depending on their arguments.
 enum class Obstacle : std::uint8_t {
   none,
   accumulation,
@@ -103,7 +103,7 @@ bool is_front(GLenum buffer) {
   }
 }
 
-/// Whose results the fragments of all tiles make together.
+/// Whether the query's result depends on the fragments of all tiles.
 bool counts_fragments(GLenum query) {
   switch (query) {
     case GL_SAMPLES_PASSED:
@@ -152,7 +152,7 @@ const char* beyond_tiles(CallId call, const std::uint64_t* words) {
           return nullptr;
       }
     case Obstacle::draw_buffer: {
-      // The last argument, with a framebuffer before it or not.
+      // The buffer is the last argument, which may follow a framebuffer.
       const std::size_t last = call == CallId::DrawBuffer ? 0 : 1;
       return is_front(GLenum(words[last])) ? front : nullptr;
     }
@@ -160,7 +160,7 @@ const char* beyond_tiles(CallId call, const std::uint64_t* words) {
       const std::string_view name = call_name(call);
       const std::size_t count_at = name.starts_with("glDrawBuffers") ? 0 : 1;
       const auto* buffers = reinterpret_cast<const GLenum*>(static_cast<std::uintptr_t>(words[count_at + 1]));
-      // The indexed form is OpenGL ES's, and has two arrays.
+      // The indexed form belongs to OpenGL ES and has two arrays.
       if (name.starts_with("glDrawBuffersIndexed") || buffers == nullptr) return nullptr;
       for (GLsizei i = 0; i < GLsizei(words[count_at]); ++i) {
         if (is_front(buffers[i])) return front;

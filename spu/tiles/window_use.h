@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a call does with the pixels of a window, by its name in the registry.
+// Classifies calls by what they do with the pixels of a window, from their names in the registry.
 #pragma once
 
 #include "dispatch/call_id.h"
@@ -8,20 +8,20 @@ namespace understudy::spu {
 
 enum class WindowUse {
   none,    ///< changes state or objects
-  draws,   ///< writes pixels, and the scissor test limits where
+  draws,   ///< writes pixels, restricted by the scissor test
   begins,  ///< glBegin
   ends,    ///< glEnd
-  lists,   ///< glCallList, glCallLists: whatever was compiled
+  lists,   ///< glCallList, glCallLists: depends on the lists
   reads,   ///< glReadPixels and its robust forms
-  copies,  ///< reads pixels into an object, or to another place
-  blits,   ///< reads and draws; never limited to a tile, as that is how a window becomes whole
-  asks,    ///< changes nothing, and answers what no later call refers to
-  pushes,  ///< glFlush, glFinish: whatever was called is to be done now
+  copies,  ///< reads pixels into an object, or copies them within the framebuffer
+  blits,   ///< reads and draws; never restricted to a tile, because windows are completed by blits
+  asks,    ///< changes nothing; no later call refers to its answer
+  pushes,  ///< glFlush, glFinish: all earlier calls are to be executed now
 };
 
 WindowUse window_use(CallId call);
 
-/// Why what the call does, or prepares, cannot be put together from tiles; null for all others.
+/// Why the result of the call, or of what it prepares, cannot be assembled from tiles; otherwise null.
 const char* beyond_tiles(CallId call, const std::uint64_t* words);
 
 }  // namespace understudy::spu

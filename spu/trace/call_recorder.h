@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One context's calls as the records of a stream that somebody else plays (StreamOrigin::elsewhere): each with
-// what it reads, what it answered, and what the application wrote into mapped buffers before it counts.
+// Records one context's calls as a stream that another process plays (StreamOrigin::elsewhere): each call with
+// the memory that it reads, its answer, and what the application has written into mapped buffers before the
+// call takes effect.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +13,18 @@ namespace understudy::spu {
 
 class CallRecorder {
  public:
-  /// `driver` is asked what pointers mean.
+  /// `driver` is queried for the meaning of pointers.
   explicit CallRecorder(const DispatchTable& driver) : driver_(driver), encoder_(driver, [] {}) {}
 
-  /// To be called before the call is made.
+  /// Must be called before the call is made.
   void before(CallId call, const std::uint64_t* words, Records& to) {
     mapped_.before(driver_, call, words, to);
     encoder_.encode(call, words, to);
   }
-  /// What the call has answered is for the stream, too.
+  /// Whether the call's answer belongs in the stream.
   static bool answers(CallId call);
   static void append_answers(CallId call, const std::uint64_t* words, std::uint64_t result, Records& to);
-  /// To be called after it.
+  /// Must be called after the call was made.
   void made(CallId call, const std::uint64_t* words, std::uint64_t result) {
     mapped_.after(driver_, call, words, result);
   }

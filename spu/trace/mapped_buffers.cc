@@ -27,7 +27,7 @@ bool flushes(CallId call) {
          call == CallId::FlushMappedNamedBufferRangeEXT;
 }
 
-/// Calls by which OpenGL may read a buffer that stays mapped.
+/// Calls that may make OpenGL read a buffer while it stays mapped.
 bool may_read_buffers(CallId call) {
   const std::string_view name = call_name(call);
   return name.starts_with("glDraw") || name.starts_with("glMultiDraw") || name.starts_with("glDispatch") ||

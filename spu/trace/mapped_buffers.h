@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an application writes into mapped buffers: no call tells of it, so it is looked for when it begins to
-// count.
+// Detects what an application writes into mapped buffers. No call reports it, so buffers are compared when
+// their contents take effect.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@ namespace understudy::spu {
 
 class MappedBuffers {
  public:
-  /// Before a call: what the application wrote so far goes to `to` where the call makes it count -- unmapping
-  /// and flushing, and for persistent mappings everything that may read a buffer.
+  /// Before a call: appends the application's writes so far to `to` if the call makes them take effect --
+  /// unmapping and flushing, and for persistent mappings every call that may read a buffer.
   void before(const DispatchTable& gl, CallId call, const std::uint64_t* words, Records& to);
-  /// After a call that maps a buffer.
+  /// After a call: tracks a mapping that it created.
   void after(const DispatchTable& gl, CallId call, const std::uint64_t* words, std::uint64_t result);
 
  private:
@@ -26,7 +26,7 @@ class MappedBuffers {
     std::byte* first = nullptr;
     std::size_t bytes = 0;
     bool written_explicitly = false;  ///< GL_MAP_FLUSH_EXPLICIT_BIT
-    std::vector<std::byte> seen;      ///< of persistent mappings: what the stream knows of the contents
+    std::vector<std::byte> seen;      ///< contents of persistent mappings as recorded so far
   };
 
   void write_changes(Mapping& mapping, Records& to);

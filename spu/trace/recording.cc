@@ -15,7 +15,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Blocks are written at frame ends; a frame as large as this is cut.
+/// Blocks are written at the ends of frames; larger frames are split.
 constexpr std::size_t large_block_words = std::size_t(8) << 20;
 
 std::uint64_t recorded_thread() {
@@ -24,7 +24,7 @@ std::uint64_t recorded_thread() {
   return number;
 }
 
-/// Creates the file for this process alone.
+/// Creates the file for this process, and returns its name.
 std::string claim(const std::string& file) {
   const int created = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (created >= 0) {
@@ -64,7 +64,7 @@ void Recording::write() {
   if (records_.empty()) return;
   try {
     if (process_ != ::getpid()) {
-      // A child after fork() must not write into its parent's file.
+      // A forked child must not write to its parent's file.
       process_ = ::getpid();
       writer_ = std::make_unique<TraceWriter>(claim(file_));
       failed_ = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The file that all contexts of a process record into.
+// The file to which all contexts of a process are recorded.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ namespace understudy::spu {
 
 class Recording {
  public:
-  /// Where `file` exists already, another process of the same run has it: this one takes `file`.PID. Nothing is
-  /// written before the first block.
+  /// If `file` already exists, it belongs to another process of the same run, and this process uses `file`.PID.
+  /// Nothing is written before the first block.
   explicit Recording(std::string file) : file_(std::move(file)) {}
 
-  /// What follows from this thread goes behind a `thread` event when another thread came last. `append` adds
-  /// records; one thread at a time.
+  /// Calls `append`, which adds records of this thread, by one thread at a time. Adds a `thread` event before
+  /// them if the previous records came from another thread.
   template <class Append>
   void append(const Append& append) {
     const std::scoped_lock lock(mutex_);
@@ -27,9 +27,9 @@ class Recording {
     append(records_);
   }
 
-  /// A frame ends: blocks end with frames, so that what is cut off later still ends with a whole one.
+  /// A frame ends: blocks end with frames, so that a truncated file still ends with a complete frame.
   void end_frame(std::uint64_t width, std::uint64_t height);
-  /// Writes what there is, when there is much of it or `now`.
+  /// Writes the records so far if there are many, or if `now`.
   void flush(bool now);
 
   std::uint64_t next_context() { return ++contexts_; }

@@ -35,7 +35,7 @@ void Trace::fill(Phase, DispatchTable& table) {
 std::uint64_t Trace::call(CallId call, const std::uint64_t* words) {
   if (call == CallId::Viewport) note_viewport(words);
   recording_.append([&](Records& records) { recorder_.before(call, words, records); });
-  // Not under the recording's lock: the call may wait for another thread's.
+  // Without the recording's lock, because the call may wait for a call of another thread.
   const std::uint64_t result = invoke(chain_.below(*this), call, words);
   chain_.after_call([&] {
     if (CallRecorder::answers(call)) {
@@ -57,7 +57,7 @@ void Trace::introduce_context() {
                                                            std::uint64_t(version), std::uint64_t(profile)};
   constexpr std::array<GLenum, 8> names = {GL_RED_BITS,   GL_GREEN_BITS,   GL_BLUE_BITS, GL_ALPHA_BITS,
                                            GL_DEPTH_BITS, GL_STENCIL_BITS, GL_SAMPLES,   GL_DOUBLEBUFFER};
-  // Core profiles do not answer the old names; eight bits and a depth of 24 are what windows have.
+  // Core profiles do not support the old queries; windows usually have eight bits per channel and 24 of depth.
   constexpr std::array<GLint, 8> usual = {8, 8, 8, 8, 24, 8, 0, 1};
   const bool core = (profile & GL_CONTEXT_CORE_PROFILE_BIT) != 0;
   for (std::size_t i = 0; i < names.size(); ++i)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The trace unit: keeps every call of a context in the process's recording, with what it reads and what it
-// answers.
+// The trace unit: records every call of a context in the process's recording, with the memory that it reads and
+// its answer.
 #pragma once
 
 #include <cstdint>
@@ -42,9 +42,9 @@ class Trace final : public Unit {
   Recording& recording_;
   CallRecorder recorder_;
   bool introduced_ = false;
-  // Nobody but the window system knows how large the drawable is, and asking it may end in an X error. OpenGL's
-  // first viewport is as large, and applications set one of its size whenever it changes: the largest viewport
-  // of a frame onto the drawable is taken for it.
+  // Only the window system knows the size of the drawable, and querying it may end in an X error. OpenGL's
+  // initial viewport has that size, and applications set a viewport of the new size whenever it changes: the
+  // largest viewport of a frame is taken as the size of the drawable.
   Extent drawable_;
   Extent in_frame_;
 };

@@ -17,7 +17,7 @@
 namespace understudy::spu {
 namespace {
 
-/// What a query's answer depends on, and how many values it has at least.
+/// The topics that a query's answer depends on, and its minimum number of values.
 struct Subject {
   StateTopics topics = topic::nothing;
   int count = 1;
@@ -42,8 +42,8 @@ constexpr GLenum constants[] = {GL_MAJOR_VERSION,
                                 GL_MIN_PROGRAM_TEXEL_OFFSET,
                                 GL_NUM_SHADING_LANGUAGE_VERSIONS};
 
-/// Answered within the bits, or clamped to the range, that the framebuffer has; its attachments are shared
-/// objects.
+/// Whether the answer is restricted to the bits or clamped to the range of the framebuffer, whose attachments
+/// are shared objects.
 bool depends_on_framebuffer(GLenum name) {
   constexpr std::array<GLenum, 8> names = {
       GL_STENCIL_REF, GL_STENCIL_BACK_REF, GL_COLOR_CLEAR_VALUE, GL_BLEND_COLOR,
@@ -51,11 +51,11 @@ bool depends_on_framebuffer(GLenum name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// By the name that is asked for.
+/// The subjects of all rows of state, by the name of the query.
 std::unordered_map<GLenum, Subject> subjects_of_rows() {
   std::unordered_map<GLenum, Subject> subjects;
   for (const StateRow& row : state_rows()) {
-    // A framebuffer object can be another context's, too.
+    // A framebuffer object may belong to another context too.
     if (row.group == StateGroup::of_framebuffer) continue;
     switch (row.question) {
       case Question::light:
@@ -92,7 +92,7 @@ std::optional<Subject> subject_of(GLenum name) {
   return std::nullopt;
 }
 
-/// That no driver answers: says where nothing was written.
+/// A value that no driver returns, which marks what was not written.
 template <class T>
 constexpr T never_answered() {
   if constexpr (std::is_floating_point_v<T>) {
@@ -114,7 +114,7 @@ struct NoteChange {
   }
 };
 
-/// Commands that need more than their topics.
+/// For commands that change more than their topics.
 struct NoteBegin {
   static const DispatchTable& before(CallId call) {
     Track::current().answers()->perhaps_inside_begin();
@@ -261,7 +261,7 @@ void Answers::values(CallId call, GLenum name, GLuint index, T* to, Ask ask) {
   ask(answered.data());
   std::size_t count = max_state_values;
   while (count > 0 && answered[count - 1] == never_answered<T>()) --count;
-  // Refused, as between glBegin and glEnd; or this very value is the answer.
+  // Rejected, as between glBegin and glEnd; or the answer happens to be this very value.
   if (count == 0) return ask(to);
   count = std::max(count, std::size_t(subject->count));
   known_outside_begin_ = true;
@@ -276,7 +276,7 @@ GLboolean Answers::enabled(CallId call, GLenum name, GLuint index, Ask ask, IsKn
   const GLboolean is = ask();
   const std::optional<Subject> subject = subject_of(name);
   if (!subject) return is;
-  // GL_FALSE is also what an error gives; asking in another way makes the same error once more.
+  // GL_FALSE is also the result after an error; another query of the name raises the same error once more.
   GLboolean value = is;
   if (is == GL_FALSE) {
     value = never_answered<GLboolean>();

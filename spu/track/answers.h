@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers of the driver that are given again until a call could have changed them (Buck, Humphreys and Hanrahan
-// 2000 answer queries from tracked state, so that no query waits for a remote renderer).
+// Answers of the driver that are repeated until a call may have changed them (Buck, Humphreys and Hanrahan 2000
+// answer queries from tracked state, so that no query waits for a remote renderer).
 //
-// No value is ever worked out here: what a call makes of its arguments, whether it is refused, and how a matrix
-// is rounded, stays the driver's business. A call only makes the answers stale that depend on what it may
-// change (state_topics.h). Values that another context can change, those of shared objects, are never kept.
+// No value is computed here: how a call's arguments change the state, whether the call is rejected, and how a
+// matrix is rounded is left to the driver. A call only invalidates the answers that depend on what it may
+// change (state_topics.h). Values of shared objects, which another context can change, are never kept.
 #pragma once
 
 #include <array>
@@ -23,22 +23,22 @@ namespace understudy::spu {
 
 class Answers {
  public:
-  /// Puts the queries into `table`, and in front of every other command a note of what it changes. `next` is
-  /// the table that `table` was made from.
+  /// Replaces the queries in `table`, and makes every other command first note what it changes. `next` is the
+  /// table that `table` was copied from.
   void fill(Phase phase, DispatchTable& table, const DispatchTable& next);
 
   void changed(StateTopics topics) { changed_ |= topics; }
-  /// glBegin perhaps, or a list that may hold one: a query is an error then.
+  /// Called for glBegin, or a list that may contain one: queries are errors from then on.
   void perhaps_inside_begin() { known_outside_begin_ = false; }
   void outside_begin() { known_outside_begin_ = true; }
 
-  /// What track itself does for a command in this phase; null where the next unit is to be called.
+  /// The track unit's own function for a command in this phase; null if the next unit is to be called.
   const DispatchTable* own(Phase phase, CallId call) const;
 
-  /// glGet*v and glGet*i_v: writes to `to` what `ask(T*)` would.
+  /// glGet*v and glGet*i_v: writes to `to` what `ask(T*)` would write.
   template <class T, class Ask>
   void values(CallId call, GLenum name, GLuint index, T* to, Ask ask);
-  /// glIsEnabled: `is_known` says whether the driver answers other queries of this name.
+  /// glIsEnabled: `is_known` finds out whether the driver answers other queries of this name.
   template <class Ask, class IsKnown>
   GLboolean enabled(CallId call, GLenum name, GLuint index, Ask ask, IsKnown is_known);
   /// glGetString and glGetStringi.
@@ -70,7 +70,7 @@ class Answers {
     std::bitset<call_count> overridden;
   };
 
-  /// Null when it must be asked.
+  /// Returns null if the driver must be queried.
   const Answer* find(const Query& query);
   void keep(const Query& query, StateTopics topics, const void* bytes, std::size_t size);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the name of a command says of its kind. For the compiler as well: a table is filled with functions for
-// the commands of one kind, and no others are made.
+// The kind of a command as far as its name determines it. Also evaluated at compile time: tables are filled
+// with functions for the commands of one kind, and no other functions are instantiated.
 #pragma once
 
 #include <span>
@@ -68,8 +68,8 @@ inline constexpr std::string_view not_compiled_prefixes[] = {"glGen",
 
 }  // namespace call_names
 
-/// `prefixes` begin with "gl", as all names do; the third letter is looked at first, which compilers do
-/// fastest.
+/// `prefixes` begin with "gl", as all names do; the third letter is compared first, because that is what
+/// compilers evaluate fastest.
 constexpr bool starts_with_any(std::string_view name, std::span<const std::string_view> prefixes) {
   for (const std::string_view prefix : prefixes)
     if (name[2] == prefix[2] && name.starts_with(prefix)) return true;

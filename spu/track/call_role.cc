@@ -39,7 +39,7 @@ CallRole find_role(CallId call) {
   if (name.starts_with("glCallList")) return CallRole::call_list;
   if (starts_with_any(name, vertex_prefixes)) return CallRole::vertex;
   if (kind_of(call) == CallKind::vertex) return CallRole::attribute;
-  // glDrawBuffer and its relatives choose, glClearBufferData and its write to objects.
+  // glDrawBuffer and similar calls set state; glClearBufferData and similar calls write to objects.
   if (name.starts_with("glDrawBuffer") || name.starts_with("glClearBufferData") ||
       name.starts_with("glClearBufferSubData")) {
     return CallRole::state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a call is to somebody who wants to know the state behind it, and not the images before.
+// The role of a call for a tool that needs the state after it, and not the images before.
 #pragma once
 
 #include "dispatch/call_id.h"
@@ -7,15 +7,15 @@
 namespace understudy::spu {
 
 enum class CallRole {
-  state,      ///< changes state or objects, or is not known well enough: it is kept
+  state,      ///< changes state or objects, or has an unknown effect: it is kept
   begin,      ///< glBegin
   end,        ///< glEnd
-  vertex,     ///< draws a vertex between the two
-  attribute,  ///< the current colour, normal, coordinate: only the last one counts
-  draw,       ///< draws, clears or copies images, and changes nothing but the framebuffer
+  vertex,     ///< adds a vertex between glBegin and glEnd
+  attribute,  ///< sets the current colour, normal or coordinate: only the last one counts
+  draw,       ///< draws, clears or copies images, and changes only the framebuffer
   call_list,  ///< glCallList, glCallLists
   read,       ///< reads images, into memory or into a buffer
-  ask,        ///< asks what no later call refers to; waits
+  ask,        ///< makes a query whose answer no later call refers to, or waits
 };
 
 CallRole role_of(CallId call);

@@ -12,7 +12,7 @@ ProgramSources& programs() {
   return Track::current().chain().group().programs();
 }
 
-/// Once the call is made.
+/// Records what a call did, after the call was made.
 template <class Note>
 void note(Note note) {
   Track::current().chain().after_call([&] { note(programs()); });
@@ -108,14 +108,14 @@ void APIENTRY get_program_binary(GLuint program, GLsizei space, GLsizei* length,
 
 void APIENTRY delete_object(GLhandleARB object) {
   Track::current().below().DeleteObjectARB(object);
-  // The one name is a shader's or a program's.
+  // A shader and a program never have the same name.
   note([&](ProgramSources& known) {
     known.shader_deleted(GLuint(object));
     known.program_deleted(GLuint(object));
   });
 }
 
-/// Commands that name one object, or two, and answer nothing: made, then noted.
+/// Commands that take one or two object names and return nothing: the call is made, then recorded.
 template <auto Slot, auto Note>
 struct Noted;
 template <class... Names, void (APIENTRY* DispatchTable::*Slot)(Names...), auto Note>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The slots of the dispatch table through which shaders and programs are made.
+// The dispatch-table slots of the commands that create and change shaders and programs.
 #pragma once
 
 #include "dispatch/table.h"

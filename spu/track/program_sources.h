@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sources that programs were linked from, kept as the calls say them: once shaders are detached and deleted
-// no query gives them back, and asking at every link would show in the driver's calls.
+// The sources that programs were linked from, recorded from the calls: once shaders are detached and deleted,
+// no query returns them, and querying them at every link would add calls to the driver.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +16,9 @@
 
 namespace understudy::spu {
 
-/// A program as it was when it was last linked, whether that link succeeded or not: the driver knows.
+/// A program as of its last link, whether or not that succeeded, which only the driver knows.
 struct ProgramRecord {
-  std::uint64_t link = 0;  ///< different for every link of every program
+  std::uint64_t link = 0;  ///< unique for every link of every program
   std::vector<std::string> vertex_sources;
   std::vector<std::string> fragment_sources;
   bool vertex_shader = false;
@@ -31,32 +31,32 @@ class ProgramSources {
  public:
   void shader_created(GLuint shader, GLenum type);
   void source_given(GLuint shader, std::string source);
-  /// What is linked is what was last compiled.
+  /// The source at the last compilation is what will be linked.
   void shader_compiled(GLuint shader);
-  /// Compiled from something that is no GLSL text.
+  /// The shader was compiled from something other than GLSL text.
   void binary_given(GLuint shader);
-  /// The name lives on while the shader is attached.
+  /// The name stays valid while the shader is attached.
   void shader_deleted(GLuint shader);
 
   void program_created(GLuint program);
   void shader_attached(GLuint program, GLuint shader);
   void shader_detached(GLuint program, GLuint shader);
   void program_linked(GLuint program);
-  /// By glCreateShaderProgramv: created, attached, linked and detached in one call.
+  /// glCreateShaderProgramv: created, attached, linked and detached in one call.
   void program_linked_from(GLuint program, GLenum type, const std::string& source);
-  /// By glProgramBinary: its sources are those of the program that `binary` was taken from, in this process.
+  /// glProgramBinary: the sources are those of the program in this process that `binary` was read from.
   void program_loaded(GLuint program, std::span<const std::byte> binary);
-  /// glGetProgramBinary gave `binary` of this program.
+  /// glGetProgramBinary returned `binary` for this program.
   void binary_taken(GLuint program, std::span<const std::byte> binary);
-  /// Whether `binary` was taken from a program in this process.
+  /// Whether `binary` was read from a program in this process.
   bool knows_binary(std::span<const std::byte> binary) const;
   void program_deleted(GLuint program);
 
-  /// As of the last link in our sight; null when there was none.
+  /// The program as of the last link that was recorded; null if there was none.
   std::shared_ptr<const ProgramRecord> program(GLuint program) const;
 
  private:
-  /// Null: there is none, or it is not known.
+  /// Null: no source, or an unknown one.
   using Source = std::shared_ptr<const std::string>;
   struct Shader {
     GLenum type = 0;
@@ -79,7 +79,7 @@ class ProgramSources {
   std::uint64_t links_ = 0;
 };
 
-/// The text that glShaderSource is given; empty when a pointer is missing.
+/// Joins the strings given to glShaderSource; empty if a pointer is missing.
 std::string joined(GLsizei count, const GLchar* const* strings, const GLint* lengths);
 
 }  // namespace understudy::spu

@@ -6,7 +6,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Kept apart per texture.
+/// Limit for separate boxes per texture.
 constexpr std::size_t most_changes = 16;
 
 }  // namespace
@@ -30,7 +30,7 @@ void ShareGroup::texture_changed(GLuint texture, const volume::TexelBox& box) {
   record.version = ++changes_;
   auto& changes = record.changes;
   if (!changes.empty()) {
-    // Segments that are uploaded one after the other are one box.
+    // Parts that are uploaded one after another form one box.
     const volume::TexelBox both = volume::enclosing(changes.back().box, box);
     if (volume::texels_in(both) <= volume::texels_in(changes.back().box) + volume::texels_in(box)) {
       changes.back() = {record.version, both};
@@ -39,7 +39,7 @@ void ShareGroup::texture_changed(GLuint texture, const volume::TexelBox& box) {
   }
   changes.push_back({record.version, box});
   if (changes.size() <= most_changes) return;
-  // Whoever looks at every frame has seen the oldest.
+  // The two oldest are merged: a caller that checks every frame has already seen the oldest.
   changes[1].box = volume::enclosing(changes[0].box, changes[1].box);
   changes.erase(changes.begin());
 }
@@ -59,12 +59,12 @@ std::optional<std::vector<volume::TexelBox>> ShareGroup::changes_since(GLuint te
 
 void ShareGroup::some_texture_changed() {
   if (!has_volumes()) return;
-  // Two threads may store in the wrong order; both changes are then newer than whatever was read before them.
+  // Two threads may store their versions in the wrong order; both are newer than any version read before.
   some_changed_.store(++changes_, std::memory_order_relaxed);
 }
 
 void ShareGroup::texture_deleted(GLuint texture) {
-  // Whoever noted something about it did so before, in the order in which the application uses the name.
+  // Records of the texture were made earlier, because the application itself orders its uses of the name.
   if (texture == 0 || !textures_are_known_.load(std::memory_order_relaxed)) return;
   const std::scoped_lock lock(mutex_);
   if (textures_.erase(texture) == 0) return;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What contexts that share objects have in common, and the driver cannot tell afterwards.
+// What contexts that share objects have in common and cannot be queried from the driver afterwards.
 //
-// The driver is the truth for everything it can be asked: bindings, uniforms, matrices, even texels are read
-// from it when a volume is recognised. Tracked is only what no query answers: that the contents of a texture
-// changed, what a display list holds, and the sources of a program's shaders.
+// Everything that can be queried is read from the driver: bindings, uniforms, matrices, even texels when a
+// volume is recognised. Only what no query returns is tracked: that the contents of a texture changed, what a
+// display list contains, and the sources of a program's shaders.
 #pragma once
 
 #include <atomic>
@@ -19,59 +19,59 @@
 
 namespace understudy::spu {
 
-/// Where a display list leaves what follows to be drawn in the window.
+/// The buffer of the window that is drawn into after a display list.
 enum class ChosenBuffer : std::uint8_t { as_before, front, other };
 
-/// What executing a display list would do.
+/// The effect of executing a display list.
 struct ListRecord {
   bool draws = false;
-  bool only_geometry = true;  ///< nothing but vertices, attributes and draws
-  bool only_polygons = true;  ///< no draw is of points or lines, or of what nobody knows
+  bool only_geometry = true;  ///< only vertices, attributes and draws
+  bool only_polygons = true;  ///< no draw is of points, lines or unknown primitives
   bool changes_textures = false;
-  // Followed where a GL server makes the calls (spu/remote/front_buffer.h):
-  bool draws_front = false;  ///< into a front buffer that it has chosen itself
+  // Tracked if a GL server makes the calls (spu/remote/front_buffer.h):
+  bool draws_front = false;  ///< into a front buffer that the list itself has chosen
   ChosenBuffer leaves = ChosenBuffer::as_before;
 };
 
-/// Safe from any thread: contexts of one group may be current on several.
+/// May be used on any thread: contexts of a group may be current on several threads.
 class ShareGroup {
  public:
-  /// Grows with every change of the texture's contents or definition.
+  /// A number that grows with every change of the texture's contents or definition.
   std::uint64_t texture_version(GLuint texture) const;
   void texture_changed(GLuint texture);
-  /// Nothing outside `box` of its level 0 did.
+  /// Only texels within `box` of level 0 changed.
   void texture_changed(GLuint texture, const volume::TexelBox& box);
-  /// Boxes around what changed after `version`; nothing where that may be anything.
+  /// Boxes that enclose all changes after `version`; nothing if the whole texture may have changed.
   std::optional<std::vector<volume::TexelBox>> changes_since(GLuint texture, std::uint64_t version) const;
-  /// A change of a texture whose name is not known. Before there are volumes nobody asks for it, and it is not
-  /// noted.
+  /// A texture changed whose name is unknown. Ignored while there are no volumes, because nobody needs the
+  /// version then.
   void some_texture_changed();
-  /// The name may come again, for another texture.
+  /// The name may be reused for another texture.
   void texture_deleted(GLuint texture);
-  /// Grows when a texture is deleted of which something is known here: what is noted elsewhere by name is void
-  /// then.
+  /// A number that grows when a texture with a record here is deleted: whatever units have recorded by texture
+  /// name is invalid then.
   std::uint64_t deletions() const { return deletions_.load(std::memory_order_relaxed); }
 
-  /// From now on until the texture is deleted, remembers() is true for it.
+  /// Makes remembers() true for the texture until it is deleted.
   void remember(GLuint texture);
   bool remembers(GLuint texture) const;
 
-  /// A 3-D texture has contents: what draws are watched for.
+  /// A 3-D texture has contents, so draws must be watched.
   void volume_defined() { has_volumes_.store(true, std::memory_order_relaxed); }
-  /// A context watches for stacks of 2-D textures, or does so no longer.
+  /// A context starts or stops watching for stacks of 2-D textures.
   void stacks_watched() { stack_watchers_.fetch_add(1, std::memory_order_relaxed); }
   void stacks_left() { stack_watchers_.fetch_sub(1, std::memory_order_relaxed); }
   bool has_volumes() const {
     return has_volumes_.load(std::memory_order_relaxed) || stack_watchers_.load(std::memory_order_relaxed) > 0;
   }
 
-  /// The texture is, or was, attached to a framebuffer or bound as an image: its contents change without an
-  /// upload.
+  /// The texture is or was attached to a framebuffer or bound as an image, so its contents may change without
+  /// an upload.
   void texture_rendered_to(GLuint texture);
   bool is_rendered_to(GLuint texture) const;
 
-  /// What one of its contexts does from now on is not followed, so nothing known of the group's objects can be
-  /// relied on.
+  /// The calls of one of the contexts are not tracked from now on, so no information about the group's objects
+  /// is reliable.
   void leave_to_driver() { left_to_driver_.store(true, std::memory_order_relaxed); }
   bool is_left_to_driver() const { return left_to_driver_.load(std::memory_order_relaxed); }
 
@@ -81,7 +81,7 @@ class ShareGroup {
   void list_defined(GLuint list, const ListRecord& record);
   void lists_deleted(GLuint first, GLsizei count);
   std::optional<ListRecord> list(GLuint list) const;
-  /// False until a list was defined that changes textures when it is called.
+  /// False until a list was defined that changes textures.
   bool lists_change_textures() const { return lists_change_textures_.load(std::memory_order_relaxed); }
 
  private:
@@ -91,20 +91,20 @@ class ShareGroup {
       volume::TexelBox box;
     };
     std::uint64_t version = 0;
-    std::uint64_t changed_wholly = 0;  ///< version
-    std::vector<Change> changes;       ///< since then, the oldest first
+    std::uint64_t changed_wholly = 0;  ///< version of the last change of the whole texture
+    std::vector<Change> changes;       ///< after that, oldest first
     bool rendered_to = false;
   };
 
-  /// With the mutex held.
+  /// Requires the mutex.
   TextureRecord& known(GLuint texture);
 
   ProgramSources programs_;
   mutable std::mutex mutex_;
   std::map<GLuint, TextureRecord> textures_;
   std::map<GLuint, ListRecord> lists_;
-  std::atomic<std::uint64_t> changes_{0};       ///< source of all versions: none is ever given twice
-  std::atomic<std::uint64_t> some_changed_{0};  ///< version of the last change whose texture is not known
+  std::atomic<std::uint64_t> changes_{0};       ///< source of all versions, each used only once
+  std::atomic<std::uint64_t> some_changed_{0};  ///< version of the last change of an unknown texture
   std::atomic<std::uint64_t> deletions_{0};
   std::atomic<bool> textures_are_known_{false};  ///< textures_ is not empty
   std::atomic<bool> has_volumes_{false};

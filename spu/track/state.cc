@@ -37,7 +37,7 @@ class StateReader {
           (core_ ? row.compatibility : row.core))
         continue;
       const GLuint count = count_of(row.per);
-      // The first generic attribute of a compatibility context is the vertex itself.
+      // Generic attribute 0 of a compatibility context is the vertex itself.
       const bool no_first = !core_ && row.set == CallId::VertexAttrib4f;
       for (GLuint number = no_first ? 1 : 0; number < count; ++number) {
         if (row.group == StateGroup::selectors) continue;
@@ -177,7 +177,7 @@ class StateReader {
   const bool core_;
 };
 
-/// A value as a parameter of the type holds it.
+/// Calls `take` with the value in a parameter's type.
 template <class Take>
 auto with_type(ValueType type, double value, Take take) {
   switch (type) {
@@ -193,7 +193,7 @@ auto with_type(ValueType type, double value, Take take) {
     case ValueType::enumeration:
     case ValueType::bitfield:
     case ValueType::uint32:
-      // Masks come as negative numbers.
+      // Queries return masks as negative numbers.
       return take(GLuint(std::int64_t(value)));
     case ValueType::int32:
       return take(GLint(value));
@@ -202,7 +202,7 @@ auto with_type(ValueType type, double value, Take take) {
   }
 }
 
-/// Writes calls, and keeps `now`, the state after them.
+/// Writes calls, and updates `now_`, the state after them.
 class Difference {
  public:
   Difference(State from, const State& to) : now_(std::move(from)), to_(to) {}
@@ -219,12 +219,12 @@ class Difference {
       const bool differs = !equal(now_.values(*item), to_.values(wanted));
       if (row.group == StateGroup::framebuffer) framebuffer_changes |= differs;
       if (row.group == StateGroup::vertex_array) vertex_array_changes |= differs;
-      // Another object may have anything.
+      // The state of a newly bound object is unknown.
       const bool unknown =
           (row.group == StateGroup::of_framebuffer && framebuffer_changes) ||
           (row.group == StateGroup::of_vertex_array && vertex_array_changes &&
            !(to_.core() && value_of(to_, CallId::BindVertexArray, GL_VERTEX_ARRAY_BINDING) == 0));
-      // The reference value is answered within the bits that the framebuffer has.
+      // The driver returns the reference value with only as many bits as the framebuffer has.
       const bool cut = row.set == CallId::StencilFuncSeparate && framebuffer_changes;
       if (differs || unknown || cut) set(*item, to_.values(wanted));
     }
@@ -232,7 +232,7 @@ class Difference {
   }
 
  private:
-  /// Both states are in the order of the rows.
+  /// Finds the same item in now_; both states are in the order of the rows.
   const State::Item* counterpart(const State::Item& wanted) {
     const auto items = now_.items();
     const auto before = [](const State::Item& a, const State::Item& b) {
@@ -248,7 +248,8 @@ class Difference {
     return item == nullptr ? 0 : state.values(*item)[0];
   }
 
-  /// While GL_COLOR_MATERIAL is enabled, the current colour and what it is for change the material.
+  /// Disables GL_COLOR_MATERIAL if needed: while it is enabled, the current colour and glColorMaterial change
+  /// the material.
   void free_the_material() {
     const State::Item* enabled = now_.find(CallId::Enable, GL_COLOR_MATERIAL);
     if (enabled == nullptr || now_.values(*enabled)[0] == 0) return;
@@ -263,7 +264,7 @@ class Difference {
 
   void set(const State::Item& item, StateValues values) {
     const StateRow& row = *item.row;
-    // Calls that name their unit need none selected.
+    // Calls with a unit argument need no selected unit.
     if (row.selector == Selector::texture_unit && !row.numbered)
       select(CallId::ActiveTexture, GL_ACTIVE_TEXTURE, item.number);
     if (row.selector == Selector::client_texture_unit)
@@ -319,7 +320,7 @@ class Difference {
     }
   }
 
-  /// The default framebuffer's buffers can be several under one name, which glDrawBuffers does not take.
+  /// One draw buffer of the default framebuffer may stand for several, which glDrawBuffers does not accept.
   void set_draw_buffers(StateValues values) {
     std::size_t used = values.size();
     while (used > 1 && values[used - 1] == GL_NONE) --used;
@@ -339,7 +340,7 @@ class Difference {
     }
   }
 
-  /// Mesa takes no pipeline away while a program is in use. Which one is to be used comes afterwards.
+  /// Mesa does not unbind a pipeline while a program is in use. The wanted program is set afterwards.
   void use_no_program() {
     const State::Item* program = now_.find(CallId::UseProgram, GL_CURRENT_PROGRAM);
     if (program == nullptr || now_.values(*program)[0] == 0) return;
@@ -370,7 +371,7 @@ class Difference {
     std::copy(identity.begin(), identity.end(), now_.values(*item).begin());
   }
 
-  /// Values go to a pointer parameter together, else one to each.
+  /// Appends a call: all values go to its pointer parameter, or one value to each parameter.
   void call(CallId id, StateValues before, StateValues values) {
     records_.begin(stable_id(id));
     const auto parameters = call_shape(id).parameters();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kinds of rows that tables of state are written with (state_rows.h).
+// Functions that build the rows of tables of state (state_rows.h).
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace understudy::spu {
 
-/// For tables alone: the names are short.
+/// For use in tables only: the names are short.
 namespace state_row_kinds {
 
 using enum CallId;
@@ -51,7 +51,7 @@ constexpr StateRow core(StateRow row) {
   row.core = true;
   return row;
 }
-/// One item each, whose number, counted from `first`, is an argument.
+/// One item each, whose number, starting at `first`, is an argument of the call.
 constexpr StateRow each(Per per, GLenum first, StateRow row) {
   row.per = per;
   row.numbered = true;
@@ -62,7 +62,7 @@ constexpr StateRow asked(Question question, StateRow row) {
   row.question = question;
   return row;
 }
-/// One item a texture unit, which is selected.
+/// One item per texture unit, which must be selected.
 constexpr StateRow of_unit(Per per, StateRow row) {
   row.per = per;
   row.selector = Selector::texture_unit;

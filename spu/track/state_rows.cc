@@ -17,7 +17,7 @@ constexpr StateRow framebuffer_rows[] = {
                        {{GL_DRAW_FRAMEBUFFER_BINDING, 1}})),
     from(300, targeted(StateGroup::framebuffer, BindFramebuffer, GL_READ_FRAMEBUFFER,
                        {{GL_READ_FRAMEBUFFER_BINDING, 1}})),
-    // OpenGL 3 promises eight.
+    // OpenGL 3 guarantees eight.
     from(300, plain(StateGroup::of_framebuffer, DrawBuffers,
                     {{GL_DRAW_BUFFER0, 1},
                      {GL_DRAW_BUFFER1, 1},
@@ -327,7 +327,7 @@ constexpr StateRow capability_rows[] = {
     unit_capability(110, GL_TEXTURE_GEN_T),
     unit_capability(110, GL_TEXTURE_GEN_R),
     unit_capability(110, GL_TEXTURE_GEN_Q),
-    // Last: from here on the current colour changes the material.
+    // Last: once it is enabled, the current colour changes the material.
     fixed_capability(GL_COLOR_MATERIAL),
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of an OpenGL context as a table: what there is, which query answers it, and which call sets it.
+// The state of an OpenGL context as a table: the items of state, the query for each, and the call that sets it.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 
 namespace understudy::spu {
 
-/// How the values are asked for.
+/// How the values are queried.
 enum class Question : std::uint8_t {
-  value,             ///< glGetDoublev: integers and floats alike come exactly
+  value,             ///< glGetDoublev: exact for integers and floats
   enabled,           ///< glIsEnabled
   enabled_indexed,   ///< glIsEnabledi
   integer_indexed,   ///< glGetIntegeri_v
@@ -26,7 +26,7 @@ enum class Question : std::uint8_t {
   vertex_attribute,  ///< glGetVertexAttribdv
 };
 
-/// What there is one item of the row for.
+/// What a row has one item for.
 enum class Per : std::uint8_t {
   context,
   light,
@@ -42,26 +42,26 @@ enum class Per : std::uint8_t {
   counter_buffer,
 };
 
-/// What must be selected before the row is asked or set.
+/// What must be selected before the row is queried or set.
 enum class Selector : std::uint8_t {
   none,
   texture_unit,         ///< GL_ACTIVE_TEXTURE
   client_texture_unit,  ///< GL_CLIENT_ACTIVE_TEXTURE
 };
 
-/// Rows are set group by group: what a later group's calls need is there then.
+/// Rows are set in the order of their groups, so that whatever a later group's calls depend on is set.
 enum class StateGroup : std::uint8_t {
-  framebuffer,  ///< which object is bound; what belongs to the object follows
+  framebuffer,  ///< which object is bound; its own state follows
   of_framebuffer,
   vertex_array,
   of_vertex_array,
-  indexed_buffers,  ///< glBindBufferRange binds to the target itself, too
+  indexed_buffers,  ///< glBindBufferRange also binds to the target itself
   bindings,
   eye_space,  ///< transformed by the modelview matrix when set
   matrices,
   values,
-  current,       ///< with GL_COLOR_MATERIAL, the current colour is the material's
-  capabilities,  ///< after what they use
+  current,       ///< with GL_COLOR_MATERIAL, the current colour is also the material's
+  capabilities,  ///< after the state that they enable
   selectors,
 };
 
@@ -70,20 +70,20 @@ struct StateQuery {
   int count = 0;
 };
 
-/// glSet(target, number, name, values...), each of the first three only where it is given.
+/// glSet(target, number, name, values...), of which the first three are present only if specified.
 struct StateRow {
   StateGroup group{};
   CallId set{};
-  std::array<StateQuery, 8> queries{};  ///< those without a count are not there
+  std::array<StateQuery, 8> queries{};  ///< entries without a count are unused
   Question question = Question::value;
   Per per = Per::context;
   Selector selector = Selector::none;
-  GLenum matrix_mode = 0;  ///< that the call needs; 0: none
+  GLenum matrix_mode = 0;  ///< required by the call; 0: none
   GLenum target = 0;       ///< first argument; 0: none
-  bool numbered = false;   ///< next argument: first_number + which of the items it is
+  bool numbered = false;   ///< next argument: first_number + index of the item
   GLenum first_number = 0;
   bool named = false;          ///< next argument: the name of the first query
-  int from_value = 0;          ///< of a query's values, the first that belongs to this row
+  int from_value = 0;          ///< index of the first of the query's values that belongs to this row
   bool compatibility = false;  ///< not in core profiles
   bool core = false;           ///< only in core profiles
   int from_version = 0;        ///< 100 * major + 10 * minor
@@ -97,10 +97,10 @@ struct StateRow {
   }
 };
 
-/// Most values that an item has.
+/// Maximum number of values of an item.
 constexpr int max_state_values = 16;
 
-/// In the order of their groups.
+/// All rows, in the order of their groups.
 std::span<const StateRow> state_rows();
 
 }  // namespace understudy::spu

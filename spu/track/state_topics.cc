@@ -11,11 +11,11 @@ namespace understudy::spu {
 namespace {
 
 struct Rule {
-  std::string_view name;  ///< a trailing * stands for any text
+  std::string_view name;  ///< a trailing * matches any text
   StateTopics topics;
 };
 
-/// The longest pattern that fits decides. What is not here changes everything: deleting (which unbinds),
+/// The longest matching pattern applies. Commands without one change everything: deletions (which unbind),
 /// popping attributes, and commands of rare extensions.
 constexpr Rule rules[] = {
     {"glGet*", topic::nothing},
@@ -81,7 +81,7 @@ constexpr Rule rules[] = {
     {"glWindowPos*", topic::nothing},
     {"glNewList", topic::nothing},
     {"glEndList", topic::nothing},
-    // Set values that glGet does not answer.
+    // These set values that glGet does not return.
     {"glLight*", topic::nothing},
     {"glMaterial*", topic::nothing},
     {"glClipPlane*", topic::nothing},
@@ -112,7 +112,7 @@ constexpr Rule rules[] = {
     {"glActiveTexture*", topic::unit},
     {"glClientActiveTexture*", topic::unit},
 
-    // Of client arrays, too, in compatibility profiles.
+    // In compatibility profiles these also affect client arrays.
     {"glEnable", topic::capability | topic::arrays},
     {"glDisable", topic::capability | topic::arrays},
     {"glEnablei", topic::capability | topic::arrays},
@@ -211,7 +211,7 @@ bool fits(std::string_view pattern, std::string_view name) {
 }
 
 StateTopics topics_of_name(CallId call) {
-  // Arrays may be read from into the current attributes.
+  // Draws may change the current attributes from the arrays.
   const CallKind kind = kind_of(call);
   if (kind == CallKind::vertex || kind == CallKind::draw) return topic::current;
   const Rule* best = nullptr;

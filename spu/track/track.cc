@@ -13,7 +13,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Inside glNewList: notes what kind of command the list takes up, then lets the driver compile it.
+/// Within glNewList: records the kind of each command in the list, then lets the driver compile it.
 struct NoteListContent {
   [[gnu::noinline]] static const DispatchTable& before(CallId call) {
     Track& track = Track::current();
@@ -39,7 +39,7 @@ struct NoteListContent {
   }
 };
 
-/// The same for draws whose first argument says what of.
+/// The same for draws whose first argument is the primitive mode.
 template <auto Slot>
 struct NotesMode;
 template <class... A, void (APIENTRY* DispatchTable::*Slot)(GLenum, A...)>
@@ -61,8 +61,8 @@ struct TellOfTextureChange {
   }
 };
 
-/// Commands that give a texture contents of three dimensions, if the argument at `Target` is GL_TEXTURE_3D
-/// (PROXY_TEXTURE_3D is a question).
+/// Commands that define a 3-D texture if the argument at `Target` is GL_TEXTURE_3D (GL_PROXY_TEXTURE_3D is only
+/// a query).
 template <std::size_t Target, auto Slot>
 struct DefinesVolume;
 template <std::size_t Target, class... A, void (APIENTRY* DispatchTable::*Slot)(A...)>
@@ -79,12 +79,12 @@ void APIENTRY texture_storage_3d(GLuint texture, GLsizei levels, GLenum internal
                                  GLsizei height, GLsizei depth) {
   Track& track = Track::current();
   track.texture_changes();
-  // An array of 2-D textures, perhaps: then there is one watch too many.
+  // If it is an array of 2-D textures, draws are watched needlessly.
   track.volume_defined();
   track.below().TextureStorage3D(texture, levels, internal_format, width, height, depth);
 }
 
-/// From now on each of the two changes whenever the other does.
+/// From now on the contents of both textures change together.
 void APIENTRY texture_view(GLuint texture, GLenum target, GLuint original, GLenum internal_format,
                            GLuint first_level, GLuint levels, GLuint first_layer, GLuint layers) {
   Track& track = Track::current();
@@ -96,7 +96,7 @@ void APIENTRY texture_view(GLuint texture, GLenum target, GLuint original, GLenu
 
 void APIENTRY delete_textures(GLsizei count, const GLuint* textures) {
   Track& track = Track::current();
-  // The slices of an open run use the texture as it is.
+  // The slices of an open run still need the texture.
   if (track.chain().phase() == Phase::deferring) track.chain().settle();
   if (count > 0 && textures != nullptr) {
     for (const GLuint texture : std::span(textures, std::size_t(count)))
@@ -105,7 +105,7 @@ void APIENTRY delete_textures(GLsizei count, const GLuint* textures) {
   track.below().DeleteTextures(count, textures);
 }
 
-/// Commands that attach the texture named by the argument at `Position` to a framebuffer.
+/// Commands that attach the texture in the argument at `Position` to a framebuffer.
 template <std::size_t Position, auto Slot>
 struct Attaches;
 template <std::size_t Position, class... A, void (APIENTRY* DispatchTable::*Slot)(A...)>
@@ -147,7 +147,7 @@ void APIENTRY bind_image_texture(GLuint unit, GLuint texture, GLint level, GLboo
   track.below().BindImageTexture(unit, texture, level, layered, layer, access, format);
 }
 
-/// Binds for reading and writing.
+/// Binds textures for reading and writing.
 void APIENTRY bind_image_textures(GLuint first, GLsizei count, const GLuint* textures) {
   Track& track = Track::current();
   if (count > 0 && textures != nullptr) {
@@ -159,7 +159,7 @@ void APIENTRY bind_image_textures(GLuint first, GLsizei count, const GLuint* tex
 void APIENTRY new_list(GLuint list, GLenum mode) {
   Track& track = Track::current();
   track.below().NewList(list, mode);
-  // Anything else is refused and opens no list.
+  // Other arguments are rejected, and no list is opened.
   if (list != 0 && (mode == GL_COMPILE || mode == GL_COMPILE_AND_EXECUTE))
     track.chain().after_call([&] { track.begin_list(list, mode); });
 }
@@ -206,7 +206,7 @@ void APIENTRY call_list_in_list(GLuint list) {
   track.below().CallList(list);
 }
 
-/// Which lists they are depends on glListBase when the open list is called.
+/// Which lists are called depends on glListBase when the open list is executed.
 void APIENTRY call_lists_in_list(GLsizei count, GLenum type, const void* lists) {
   Track& track = Track::current();
   ListRecord& open = track.open_list();
@@ -263,7 +263,7 @@ void Track::end_list() {
 }
 
 void Track::texture_changes() {
-  // Without volumes nobody asks which texture it was. In the watching phase, units note it themselves.
+  // Without volumes it does not matter which texture changes. In the watching phase, units record it.
   if (chain_.group().has_volumes()) chain_.set_phase(Phase::watching);
 }
 
@@ -285,7 +285,7 @@ void Track::texture_rendered_to(GLuint texture) {
 }
 
 void Track::made_current() {
-  // The first time, the viewport becomes the window's; and another drawable has other buffers.
+  // At the first make-current the viewport takes the window's size, and another drawable has other buffers.
   if (!answers_) return;
   answers_->changed(topic::everything);
   answers_->perhaps_inside_begin();

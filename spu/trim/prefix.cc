@@ -32,7 +32,7 @@ GLenum buffer_binding(GLenum target) {
   }
 }
 
-/// Faces of a cube are images of one texture.
+/// The faces of a cube map are images of one texture.
 GLenum texture_target(GLenum image_target) {
   const bool face =
       image_target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && image_target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z;
@@ -136,7 +136,7 @@ RecordAction Prefix::action_of_call(CallId call, const Record& record, ThreadSta
       return RecordAction::drop;
     case CallRole::attribute: {
       if (!thread.inside_begin) return RecordAction::keep;
-      // Texture units and generic attributes are told apart by their first argument.
+      // Attributes of different texture units or indices differ in the first argument.
       const std::string_view name = call_name(call);
       const bool numbered = name.starts_with("glMulti") || name.starts_with("glVertexAttrib");
       const std::pair key(record.id, numbered && record.words.size() > 1 ? record.words[1] : 0);
@@ -162,14 +162,14 @@ RecordAction Prefix::action_of_call(CallId call, const Record& record, ThreadSta
 
 namespace {
 
-/// A call's word by its place, 0 where the record ends before.
+/// The word of the call's argument at `place`; 0 if the record is too short.
 std::uint64_t word_at(const Record& record, std::size_t place) {
   return place + 1 < record.words.size() ? record.words[place + 1] : 0;
 }
 
 }  // namespace
 
-/// What OpenGL is about to write to. Not between glBegin and glEnd.
+/// Marks the objects that OpenGL is about to write to. Must not be called between glBegin and glEnd.
 void Prefix::look_before(CallId call, const Record& record, const ThreadState& thread) {
   const std::string_view name = call_name(call);
   switch (role_of(call)) {
@@ -188,7 +188,7 @@ void Prefix::look_before(CallId call, const Record& record, const ThreadState& t
       role_of(call) == CallRole::call_list) {
     framebuffer_seen_ = {};
   }
-  // A list that is made reads the buffers of the moment: none of their contents may go.
+  // A list that is being compiled reads the current contents of buffers: their earlier uploads are kept.
   if (thread.compiling && kind_of(call) == CallKind::draw) {
     std::erase_if(uploads_, [](const auto& entry) { return std::get<1>(entry.first) == ObjectKind::buffer; });
   }
@@ -204,7 +204,7 @@ void Prefix::look_at_texture(CallId call, const Record& record) {
       name.starts_with("glGenerateMipmap")) {
     mark_bound_texture(GLenum(word(0)));
   }
-  // OpenGL tells a texture's target in core profiles only.
+  // The target of a texture can be queried in core profiles only.
   if (call == CallId::BindTexture || call == CallId::BindTextureEXT)
     stream_object(ObjectKind::texture, GLuint(player_.here(ObjectKind::texture, word(1)))).target =
         GLenum(word(0));
@@ -225,7 +225,7 @@ void Prefix::look_at_buffer(CallId call, const Record& record) {
     mark(ObjectKind::buffer, GLuint(player_.here(ObjectKind::buffer, word(2))));
   if (call == CallId::CopyBufferSubData) {
     GLint buffer = 0;
-    // Every target that buffers can be copied to has its binding under one of a few names.
+    // Only targets whose binding is known here.
     const GLenum binding = word(1) == GL_COPY_WRITE_BUFFER ? GLenum(GL_COPY_WRITE_BUFFER_BINDING)
                                                            : buffer_binding(GLenum(word(1)));
     if (binding != GL_NONE) player_.driver().GetIntegerv(binding, &buffer);
@@ -266,7 +266,7 @@ void Prefix::note_upload(CallId call, const Record& record) {
     if (binding == GL_NONE) return;
     const GLuint texture = ask(binding);
     const ReferenceKind kind = data_kind(name.starts_with("glCompressed") ? "data" : "pixels");
-    // The buffer's later contents would come instead.
+    // When the stream is played later, the buffer would have other contents.
     if (kind == ReferenceKind::address) mark(ObjectKind::texture, texture);
     Upload upload{.record = actions_.size(), .makes_room = !is_sub(name)};
     const std::array<std::int64_t, 3> first = {argument("xoffset", 0), argument("yoffset", 0),
@@ -291,7 +291,7 @@ void Prefix::note_upload(CallId call, const Record& record) {
   supersede({group, ObjectKind::buffer, ask(binding), 0, 0}, upload);
 }
 
-/// The stream has told what the thread's last call answered: names there and here.
+/// Records the answers of the thread's last call: names in the stream and local names.
 void Prefix::note_answers(const Record& record) {
   const auto arguments = record.arguments();
   const auto call = arguments.empty() ? std::nullopt : find_stable_id(std::uint32_t(arguments[0]));

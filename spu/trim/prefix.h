@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of a trace before the cut: it is played, and every record gets a action. What defines stays, what
-// draws goes, and what was drawn where later frames may look is restored (restoration.h).
+// The part of a trace before the cut. It is played, and every record gets an action: definitions are kept,
+// drawing is dropped, and drawn contents that later frames may use are restored (restoration.h).
 #pragma once
 
 #include <array>
@@ -22,11 +22,11 @@ namespace understudy::spu {
 enum class RecordAction : std::uint8_t {
   keep,
   drop,
-  keep_without_data,  ///< an upload whose data a later one replaces: it still makes room
-  expand,             ///< a display list: what it changes is kept, what it draws is not
+  keep_without_data,  ///< an upload whose data is replaced later: it still allocates the storage
+  expand,             ///< a display list: its changes of state are kept, its drawing is not
 };
 
-/// An object that contexts share and that OpenGL itself has written to, by its name here.
+/// An object, shared by contexts, that OpenGL itself has written to; `here` is its local name.
 struct DrawnObject {
   std::uint64_t group = 0;  ///< of contexts
   ObjectKind kind = ObjectKind::none;
@@ -37,7 +37,7 @@ struct DrawnObject {
   }
 };
 
-/// What the stream says of such an object.
+/// What the stream specifies about such an object.
 struct StreamObject {
   GLuint name = 0;
   GLenum target = GL_NONE;  ///< of textures
@@ -47,31 +47,31 @@ class Prefix {
  public:
   explicit Prefix(Player& player) : player_(player) {}
 
-  /// Plays the record and decides about it. Returns what is wrong with it.
+  /// Plays the record and determines its action. Returns an error in the record, or an empty string.
   std::string play(const Record& record);
 
-  /// By number of the record; final when the prefix has been played.
+  /// By number of the record; final when the whole prefix has been played.
   const std::vector<RecordAction>& actions() const { return actions_; }
   const std::map<DrawnObject, StreamObject>& drawn() const { return drawn_; }
   /// The thread of the last record.
   std::uint64_t thread() const { return thread_; }
 
  private:
-  using Box = std::array<std::int64_t, 6>;  ///< first x, y, z, then one behind the last
+  using Box = std::array<std::int64_t, 6>;  ///< first x, y, z, then the ends, exclusive
 
   struct Upload {
     std::size_t record = 0;
     Box box{};
     bool makes_room = false;
   };
-  /// group, kind of object, its name here, target, level
+  /// group, kind of object, its local name, target, level
   using Image = std::tuple<std::uint64_t, ObjectKind, GLuint, GLenum, GLint>;
 
   struct ThreadState {
     bool inside_begin = false;
     bool compiling = false;
     RecordAction last_call = RecordAction::keep;
-    /// The last record of each current attribute since glBegin.
+    /// The last record that set each current attribute since glBegin.
     std::map<std::pair<std::uint32_t, std::uint64_t>, std::size_t> attributes;
   };
 
@@ -96,12 +96,12 @@ class Prefix {
   std::map<Image, std::vector<Upload>> uploads_;
   std::map<DrawnObject, StreamObject> drawn_;
   std::map<DrawnObject, StreamObject> objects_;
-  GLenum last_created_ = GL_NONE;  ///< target of textures whose names are still to be told
-  /// Attachments need to be looked at again only when they may be others.
+  GLenum last_created_ = GL_NONE;  ///< target of textures whose names are not yet known
+  /// The framebuffer whose attachments were queried last; they are queried again only if they may have changed.
   std::tuple<std::uint64_t, GLuint> framebuffer_seen_{};
 };
 
-/// Which binding glGetIntegerv names for a texture target; 0 where there is none.
+/// The name of the binding of a texture target, for glGetIntegerv; 0 if there is none.
 GLenum texture_binding(GLenum target);
 
 }  // namespace understudy::spu

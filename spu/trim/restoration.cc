@@ -16,7 +16,7 @@
 namespace understudy::spu {
 namespace {
 
-/// A call with values, and data behind its last argument.
+/// Appends a call with values, and with data for its last argument.
 void append_call(CallId call, std::initializer_list<std::uint64_t> values, std::span<const std::byte> data,
                  Records& to) {
   to.begin(stable_id(call));
@@ -34,8 +34,8 @@ struct Transfer {
   GLenum type;
 };
 
-/// A format and type that carry the texture's values there and back without loss; nothing for those that cannot
-/// be uploaded so.
+/// A format and type that transfer the texture's values in both directions without loss; nothing if the texture
+/// cannot be uploaded that way.
 std::optional<Transfer> transfer_for(const DispatchTable& gl, GLuint texture) {
   const auto level = [&](GLenum name) {
     GLint value = 0;
@@ -140,7 +140,7 @@ std::string restore_buffer(const DispatchTable& gl, GLuint here, GLuint there, R
   return {};
 }
 
-/// For as long as textures are read: pixels lie tight, in memory.
+/// While in scope, textures are read to memory as tightly packed pixels.
 class TightReading {
  public:
   explicit TightReading(const DispatchTable& gl) : gl_(gl), store_(pixel_store(gl, pack_names)) {

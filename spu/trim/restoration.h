@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Brings back, behind the cut, what OpenGL had drawn into objects before it: their contents are read here, and
+// Restores, after the cut, what OpenGL had drawn into objects before it: their contents are read here, and
 // become uploads in the stream.
 #pragma once
 
@@ -13,8 +13,7 @@
 
 namespace understudy::spu {
 
-/// Appends the uploads to `to`; they leave every binding as it is. Returns what could not be restored, in plain
-/// words.
+/// Appends the uploads to `to`; they leave all bindings unchanged. Returns what could not be restored, as text.
 std::vector<std::string> restore_drawn(Player& player, const std::map<DrawnObject, StreamObject>& drawn,
                                        Records& to);
 

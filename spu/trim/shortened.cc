@@ -14,7 +14,7 @@ namespace understudy::spu {
 namespace {
 
 constexpr std::size_t large_payload_words = std::size_t(1) << 20;
-/// OpenGL itself nests lists no deeper than 64.
+/// Limit for the nesting of lists in OpenGL.
 constexpr int deepest_nesting = 64;
 
 /// Words of the record that may refer to its block's payload.
@@ -43,7 +43,7 @@ std::vector<std::size_t> references_of(const Record& record) {
   return words;
 }
 
-/// Names of lists as glCallLists takes them.
+/// The names of lists in the arguments of glCallLists.
 std::optional<std::vector<std::uint32_t>> list_names(const Record& record) {
   const auto data = record.words.size() > 3 ? record.bytes(record.words[3]) : std::nullopt;
   if (!data) return std::nullopt;
@@ -77,13 +77,13 @@ std::optional<std::vector<std::uint32_t>> list_names(const Record& record) {
   return names;
 }
 
-/// Whether all arguments of its call are there.
+/// Whether the record is a call with all of its arguments.
 bool is_whole(const Record& record) {
   const auto call = find_stable_id(record.id);
   return call && record.words.size() > call_shape(*call).parameter_count;
 }
 
-/// The upload makes room, and brings nothing.
+/// Copies an upload without its data, so that it only allocates the storage.
 void copy_without_data(const Record& record, Records& to) {
   if (!is_whole(record)) return;
   const auto call = find_stable_id(record.id);
@@ -93,8 +93,7 @@ void copy_without_data(const Record& record, Records& to) {
     to.append(parameters[p].pointer != 0 ? Reference{}.word() : record.words[p + 1]);
 }
 
-/// The record as it is, its payload included. Those of calls that are not known here lose their payload, which
-/// nobody could find.
+/// Copies the record with its payload. Unknown calls lose their payload, whose references cannot be found.
 void copy_record(const Record& record, Records& to) {
   to.begin(record.id);
   for (const std::uint64_t word : record.arguments()) to.append(word);
@@ -115,7 +114,7 @@ std::uint64_t Shortened::group_of(std::uint64_t context) const {
   return context;
 }
 
-/// What must be known of the stream to find display lists.
+/// Tracks the state of the stream that is needed to find display lists.
 void Shortened::follow(const Record& record) {
   const auto words = record.arguments();
   if (words.empty()) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shorter trace as it is written: records of the prefix by their actions, then the frames behind the cut.
+// Writes the shortened trace: records of the prefix according to their actions, then the frames after the cut.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,13 @@ class Shortened {
   /// Throws std::system_error.
   explicit Shortened(const std::filesystem::path& path) : writer_(path) {}
 
-  /// A record before the cut.
+  /// Adds a record before the cut.
   void take(const Record& record, RecordAction action);
-  /// At the cut: records that were made for it.
+  /// Adds the records that were made for the cut.
   void take_all(const Records& records);
-  /// A record of the frames that stay; they are numbered from 1.
+  /// Adds a record of the frames that are kept; they are numbered from 1.
   void take(const Record& record);
-  /// Writes what is left.
+  /// Writes the remaining records.
   void finish();
 
  private:

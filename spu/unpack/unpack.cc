@@ -16,8 +16,8 @@
 namespace understudy::spu {
 namespace {
 
-/// Calls that make pixels. Within one process nothing is gained by keeping them waiting, and a program may end
-/// without another word: by then the driver is no longer able to draw what it had never heard of.
+/// Calls that draw. Within one process nothing is gained by delaying them, and a program may end without
+/// notice: what the driver has not received by then is never drawn.
 bool makes_pixels(CallId call) {
   static const std::vector<bool> all = [] {
     constexpr std::array<std::string_view, 14> beginnings = {
@@ -54,7 +54,7 @@ std::uint64_t Unpack::take(const Records& records, const PackedCall* /*last*/) {
       logging::log(logging::Level::error, "unpack: the stream is damaged at word {}; please report this", at);
       return 0;
     }
-    // A call may change the phase, and with it the table behind us.
+    // A call may change the phase, and with it the table of the next unit.
     Decoded decoded = decoder_.decode(*record, chain_.below(*this));
     if (!decoded.error.empty() && decoded.error != last_error_) {
       logging::log(logging::Level::warn, "unpack: {}; the call is left out, please report this", decoded.error);

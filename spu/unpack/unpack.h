@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The unpack unit: makes the calls of records on the units behind it.
+// The unpack unit: makes the calls in records on the units after it.
 #pragma once
 
 #include <string>

@@ -27,7 +27,7 @@ GLenum window_buffer(const DispatchTable& gl) {
   return state_value(gl, GL_DOUBLEBUFFER) != 0 ? GL_BACK : GL_FRONT;
 }
 
-/// While it lives, pixels travel as they are between tight memory and framebuffers.
+/// While in scope, pixels are transferred unchanged between tightly packed memory and framebuffers.
 class PlainPixels {
  public:
   PlainPixels(const DispatchTable& gl, GLenum buffer_target, GLenum buffer_binding,
@@ -39,7 +39,7 @@ class PlainPixels {
         names_(names),
         store_(pixel_store(gl, names)) {
     if (!core_) {
-      // Scales, biases and maps of the application would change what travels.
+      // The application's scales, biases and maps would change the pixels.
       gl.PushAttrib(GL_PIXEL_MODE_BIT);
       for (const GLenum name : {GL_RED_SCALE, GL_GREEN_SCALE, GL_BLUE_SCALE, GL_ALPHA_SCALE, GL_DEPTH_SCALE})
         gl.PixelTransferf(name, 1);
@@ -87,7 +87,7 @@ void read_window(const DispatchTable& gl, int width, int first_row, int rows,
   if (framebuffer != 0) gl.BindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(framebuffer));
 }
 
-/// A texture of one level in the framebuffer that is bound for reading.
+/// Attaches a texture of one level to the framebuffer that is bound for reading.
 void attach(const DispatchTable& gl, GLuint texture, GLenum attachment, GLint format, Extent2D extent,
             const Destination& source) {
   gl.BindTexture(GL_TEXTURE_2D, texture);
@@ -96,7 +96,7 @@ void attach(const DispatchTable& gl, GLuint texture, GLenum attachment, GLint fo
   gl.FramebufferTexture2D(GL_READ_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture, 0);
 }
 
-/// The buffers that are drawn to.
+/// The buffers that are bound for drawing.
 std::vector<GLenum> draw_buffers(const DispatchTable& gl) {
   std::vector<GLenum> buffers(std::size_t(std::clamp(state_value(gl, GL_MAX_DRAW_BUFFERS), 1, 16)));
   for (std::size_t i = 0; i < buffers.size(); ++i)
@@ -105,7 +105,8 @@ std::vector<GLenum> draw_buffers(const DispatchTable& gl) {
   return buffers;
 }
 
-/// The first scissor test alone is in the way; the others, of further viewports, stay as they are.
+/// While in scope, disables the scissor test of the first viewport. Those of other viewports do not matter
+/// here.
 class NoScissor {
  public:
   explicit NoScissor(const DispatchTable& gl)
@@ -152,7 +153,7 @@ WindowContents window_contents(const DispatchTable& gl, Extent2D extent, bool de
 }
 
 void set_window_contents(const DispatchTable& gl, const WindowContents& contents) {
-  // A blit is subject to less of the context's state than drawing and clearing.
+  // A blit depends on less of the context's state than drawing and clearing.
   const PlainPixels plain(gl, GL_PIXEL_UNPACK_BUFFER, GL_PIXEL_UNPACK_BUFFER_BINDING, unpack_names);
   const NoScissor no_scissor(gl);
   const GLint drawn_to = state_value(gl, GL_DRAW_FRAMEBUFFER_BINDING),
@@ -165,7 +166,7 @@ void set_window_contents(const DispatchTable& gl, const WindowContents& contents
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   const auto [width, height] = contents.extent;
-  // What is put in is only read.
+  // The contents are only read.
   void* colours = const_cast<std::uint8_t*>(contents.colours.data());
   attach(gl, textures[0], GL_COLOR_ATTACHMENT0, GL_RGBA8, contents.extent,
          {GL_RGBA, GL_UNSIGNED_BYTE, colours});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The default framebuffer as bytes, and back, without a trace in the context that shows it.
+// Reads and writes the default framebuffer, and leaves the state of its context unchanged.
 #pragma once
 
 #include <cstdint>
@@ -10,27 +10,27 @@
 
 namespace understudy::spu {
 
-/// RGBA with 8 bits, rows bottom up, of the lower left `extent` of what the current context shows or is about
-/// to show.
+/// Returns the lower left `extent` of what the current context shows or is about to show: RGBA with 8 bits,
+/// rows from the bottom.
 std::vector<std::uint8_t> shown_image(const DispatchTable& gl, Extent2D extent);
-/// `count` rows of it, from row `first` on.
+/// Returns `count` rows of it, from row `first` on.
 std::vector<std::uint8_t> shown_rows(const DispatchTable& gl, int width, int first, int count);
 
-/// Of depth and stencil in one word.
+/// Depth and stencil of a cleared window, in one word.
 constexpr std::uint32_t far_away = 0xffff'ff00U;
 
-/// All of a default framebuffer but what accumulates.
+/// All buffers of a default framebuffer except the accumulation buffer.
 struct WindowContents {
   Extent2D extent;
-  std::vector<std::uint8_t> colours;         ///< as shown_image() has them
-  std::vector<std::uint32_t> depth_stencil;  ///< GL_UNSIGNED_INT_24_8; empty where there is neither
+  std::vector<std::uint8_t> colours;         ///< in the format of shown_image()
+  std::vector<std::uint32_t> depth_stencil;  ///< GL_UNSIGNED_INT_24_8; empty without depth and stencil
 };
 
-/// As a cleared window has them: black, far away.
+/// The contents of a cleared window: black, at the far plane.
 WindowContents cleared_contents(Extent2D extent, bool depth_stencil);
-/// Of the current context's window. The depth is asked for only where there are 24 bits of it and 8 of stencil.
+/// Reads the current context's window. `depth_stencil` requires 24 bits of depth and 8 of stencil.
 WindowContents window_contents(const DispatchTable& gl, Extent2D extent, bool depth_stencil);
-/// Puts them into the current context's window, which has depth and stencil if they do.
+/// Writes the contents to the current context's window, which must have depth and stencil if they do.
 void set_window_contents(const DispatchTable& gl, const WindowContents& contents);
 
 }  // namespace understudy::spu

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# What Understudy needs of a system and of a compiler. Without it, building would fail later with errors that tell nothing.
+# Checks the requirements on system and compiler; otherwise the build would fail later with uninformative errors.
 include(CheckCXXSourceCompiles)
 if(NOT CMAKE_SYSTEM_NAME STREQUAL "Linux")
   message(FATAL_ERROR "Understudy is built for Linux, not for ${CMAKE_SYSTEM_NAME}: it stands between a program and Linux's loader")
@@ -17,7 +17,7 @@ foreach(oldest "GNU 12" "Clang 14")
   endif()
 endforeach()
 
-# understudy_requires(RESULT MACRO SENTENCE…): the macro that the standard library's headers define.
+# understudy_requires(RESULT MACRO SENTENCE...): MACRO must be defined by the standard library's headers.
 function(understudy_requires result macro)
   check_cxx_source_compiles("#include <cstdlib>\n#ifndef ${macro}\n#error\n#endif\nint main() {}" ${result})
   if(NOT ${result})

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# glslang, the front end of GLSL, with the headers of its syntax tree. Distributions install these up to glslang 13; where
-# they do not, the version that is tested is built here: fetched, or taken from -DFETCHCONTENT_SOURCE_DIR_GLSLANG=FOLDER.
+# glslang, the GLSL front end, with the headers of its syntax tree. Distributions install these headers up to glslang
+# 13. Otherwise the tested version is built here: fetched, or taken from -DFETCHCONTENT_SOURCE_DIR_GLSLANG=FOLDER.
 find_package(glslang QUIET)
 if(glslang_FOUND)
   get_target_property(glslang_includes glslang::glslang INTERFACE_INCLUDE_DIRECTORIES)
   find_file(GLSLANG_TREE_HEADER glslang/Include/intermediate.h PATHS ${glslang_includes})
 endif()
 if(GLSLANG_TREE_HEADER)
-  # A distribution's is built with its HLSL parts; its headers must be read alike.
+  # Distributions build it with HLSL support; its headers must be compiled in the same way.
   set(understudy_glslang glslang::glslang glslang::glslang-default-resource-limits)
   set(understudy_glslang_definitions ENABLE_HLSL)
   return()
@@ -23,7 +23,7 @@ set(SKIP_GLSLANG_INSTALL ON CACHE INTERNAL "of glslang")
 FetchContent_GetProperties(glslang)
 if(NOT glslang_POPULATED)
   FetchContent_Populate(glslang)
-  # Its warnings are its own.
+  # Warnings of glslang are not ours to fix.
   set(CMAKE_COMPILE_WARNING_AS_ERROR OFF)
   set_property(DIRECTORY APPEND PROPERTY COMPILE_OPTIONS -w)
   add_subdirectory(${glslang_SOURCE_DIR} ${glslang_BINARY_DIR} EXCLUDE_FROM_ALL SYSTEM)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-# From nothing, most of what compiling takes are headers and templates that many sources share. Compiled in groups, they
-# are read and instantiated once a group. `./run` builds so; who works on sources and compiles one after the other does
-# not need it.
+# In a full build, most of the compile time goes into headers and templates that many sources share. Compiled in groups,
+# they are parsed and instantiated once per group. `./run` builds in this way; for work on single sources it is not
+# needed.
 option(UNDERSTUDY_GROUPS "Compile sources in groups: less work from nothing, more after a change" OFF)
 
-# compile_in_groups(TARGET [SIZE NUMBER] [APART SOURCE…]): in groups of NUMBER; the more, the more likely two sources have a
-# name of their own that is the same. APART are sources with names of their own that another source of the group
-# has too, and those that are compiled once for each instruction set.
+# compile_in_groups(TARGET [SIZE NUMBER] [APART SOURCE...]): compiles in groups of NUMBER sources; the larger a group,
+# the more likely two sources define the same local name. APART lists sources whose local names collide with another
+# source of the group, and sources that are compiled once per instruction set.
 function(compile_in_groups target)
   cmake_parse_arguments(ARG "" "SIZE" "APART" ${ARGN})
   if(NOT UNDERSTUDY_GROUPS)
@@ -16,7 +16,7 @@ function(compile_in_groups target)
     set(ARG_SIZE 40)
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${ARG_SIZE})
-  # gcc takes a source that is included for a header, whose unnamed namespaces would be another's in every user.
+  # gcc treats included sources as headers, whose unnamed namespaces would differ in every user.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   set_source_files_properties(${ARG_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

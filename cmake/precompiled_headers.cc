@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program whose precompiled headers other programs use.
+// The program whose precompiled headers other programs reuse.
 int main() {}

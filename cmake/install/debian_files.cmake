@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# What Debian's policy asks of a package beside what is installed: compressed manual pages, a changelog, where its licence
-# is, and why lintian is wrong. cpack runs this before it packs.
+# Files that Debian's policy requires of a package in addition to what is installed: compressed manual pages, a
+# changelog, the copyright file, and overrides of lintian's false positives. cpack runs this script before it packs.
 if(NOT CPACK_GENERATOR STREQUAL "DEB")
   return()
 endif()

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake --install: what users have (component runtime), and what programs are built with that cast rays, join the nodes or
-# add a unit to the chain (component development). Programs find everything from their own place, so that the prefix can be
-# moved.
-# What is installed is built by name, without tests and benchmarks.
+# cmake --install: component runtime holds what users need; component development holds what is needed to build programs
+# that cast rays, join the nodes or add a unit to the chain. Programs locate everything relative to themselves, so that
+# the prefix can be moved.
+# Installed targets are built by name, without tests and benchmarks.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 include(CMakePackageConfigHelpers)
 include(${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake)
@@ -41,7 +41,7 @@ install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONE
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Understudy)
 set(headers_folder ${CMAKE_INSTALL_INCLUDEDIR}/understudy)
 
-# install_component(NAME TARGETS EXPORTED_NAME TARGET… HEADERS HEADER…)
+# install_component(NAME TARGETS EXPORTED_NAME TARGET... HEADERS HEADER...)
 function(install_component name)
   cmake_parse_arguments(ARG "" "" "TARGETS;HEADERS" ${ARGN})
   while(ARG_TARGETS)
@@ -97,7 +97,7 @@ configure_file(${CMAKE_CURRENT_LIST_DIR}/understudy-raycast.pc.in ${CMAKE_CURREN
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/understudy-raycast.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
   COMPONENT development)
 
-# Where the interpreter looks: Debian has one folder for all versions of Python 3.
+# The interpreter's search path: Debian has one folder for all versions of Python 3.
 if(TARGET understudy_python)
   if(EXISTS /etc/debian_version)
     set(python_packages lib/python3/dist-packages)
@@ -111,7 +111,7 @@ if(TARGET understudy_python)
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-understudy RENAME copyright COMPONENT python)
 endif()
 
-# For sites that offer programs by `module load`. Packages, whose prefix is the system's, leave it out.
+# For sites that provide programs by `module load`. Packages, which install into the system's prefix, omit it.
 set(modulefiles_folder ${CMAKE_INSTALL_DATADIR}/modulefiles/understudy)
 file(RELATIVE_PATH prefix_from_modulefile /prefix/${modulefiles_folder} /prefix)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/modulefile.in ${CMAKE_CURRENT_BINARY_DIR}/modulefile @ONLY)

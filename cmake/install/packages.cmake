@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# cpack: understudy_VERSION_ARCHITECTURE.deb and understudy-dev, the same as .rpm where rpmbuild is, and archives.
-# The module is one version of Python's.
+# cpack: understudy_VERSION_ARCHITECTURE.deb and understudy-dev, the same as .rpm if rpmbuild is installed, and
+# archives.
+# The module supports a single version of Python.
 if(TARGET understudy_python)
   math(EXPR python_after "${Python_VERSION_MINOR} + 1")
 endif()
@@ -12,7 +13,7 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "OpenGL library that ray-casts a viewer's 
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_GENERATOR "DEB;TZST")
-# For systems that have the libraries' versions of the one that builds it.
+# For systems with the same library versions as the build machine.
 find_program(UNDERSTUDY_RPMBUILD rpmbuild)
 if(UNDERSTUDY_RPMBUILD)
   list(APPEND CPACK_GENERATOR RPM)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# public_headers(OUT HEADER…): these headers of the source tree and all that they include of it. OUT_GENERATED: those
-# among them that the build makes.
+# public_headers(OUT HEADER...): these headers of the source tree and all that they include from it. OUT_GENERATED:
+# those among them that the build generates.
 function(public_headers out)
   set(all "")
   set(generated "")

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A limit of address space (ulimit -v): wherever the viewer itself ends well, it does so under Understudy.
+"""Limits the address space (ulimit -v): wherever the viewer itself ends well, it must do so under Understudy.
 
     address_space.py UNDERSTUDY UNDERSTUDY-VIEWER ENTRY-LIBRARY
 
-The viewer's need is the least limit, in steps of 4 MB, from which on it ends well in 4 of 4 runs at each step: below, the
-driver crashes at some limits and not at others (at 508 to 528 MB and at 580 to 592 MB, say), as a thread gets a heap of its
-own or does not. From that need and 96 MB for the libraries' mappings upwards, in steps of 50 MB, status and image under
-Understudy are the viewer's, to 40 dB, until its volume is substituted, and five steps beyond.
+The viewer's need is the smallest limit, in steps of 4 MB, from which on it ends well in 4 of 4 runs at every step. Below it,
+the driver crashes at some limits and not at others (at 508 to 528 MB and at 580 to 592 MB, for example), depending on whether
+a thread gets its own heap. Tested limits begin at that need plus 96 MB for the libraries' mappings and increase in steps of
+50 MB. Status and image under Understudy must equal the viewer's, to 40 dB, until five steps after its volume is first
+substituted.
 """
 
 import os
@@ -54,7 +55,7 @@ class Viewer:
                               timeout=PATIENCE_SECONDS, check=False, preexec_fn=limit)
 
     def ends(self, limit_mb, **more):
-        """Status and PSNR of one run; no PSNR where there is no image."""
+        """Status and PSNR of one run; the PSNR is None if there is no image."""
         image = self.folder / "image.png"
         image.unlink(missing_ok=True)
         result = self.draw(image, limit_mb, **more)
@@ -65,17 +66,17 @@ class Viewer:
         return result.returncode, float(found[1]) if found else None
 
     def ends_well(self, limit_mb, runs, **more):
-        """How many of `runs` runs, and the worst PSNR of those that did."""
+        """How many of `runs` runs end well, and the worst PSNR of these."""
         ends = [self.ends(limit_mb, **more) for _ in range(runs)]
         good = [decibels for status, decibels in ends if status == 0 and decibels is not None and decibels >= LEAST_DECIBELS]
         return len(good), min(good, default=0)
 
 
 def need_of(viewer, largest_mb):
-    """Of the viewer alone."""
+    """The need of the viewer alone, in MB."""
     need = None
     for limit in range(STEP_MB * 4, largest_mb, STEP_ALONE_MB):
-        # One run that fails tells enough.
+        # One failed run is sufficient.
         well = all(viewer.ends_well(limit, 1)[0] for _ in range(RUNS_ALONE))
         if not well:
             need = None
@@ -88,7 +89,7 @@ def main():
     understudy, program, entry = sys.argv[1:]
     with tempfile.TemporaryDirectory() as folder:
         viewer = Viewer(understudy, program, entry, Path(folder))
-        largest = max(1000, 100 * os.cpu_count())  # llvmpipe's threads take some 70 MB each
+        largest = max(1000, 100 * os.cpu_count())  # llvmpipe's threads take about 70 MB each
         need = need_of(viewer, largest)
         if need is None:
             raise SystemExit(f"the viewer itself does not end well below {largest} MB")
@@ -100,7 +101,7 @@ def main():
             print(f"{limit} MB: {good} of {RUNS_UNDER} runs end well, {decibels} dB", flush=True)
             if good < RUNS_UNDER:
                 wrong.append(limit)
-            # An image to the last bit is the viewer's own.
+            # A bit-identical image is the viewer's own.
             substituted += decibels not in (0, float("inf"))
             if substituted > STEPS_BEYOND:
                 break

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`understudy serve` with one node at a port of this machine, for programs that attack it."""
+"""Starts `understudy serve` with one node at a local port, for programs that attack it."""
 
 import re
 import subprocess
@@ -7,7 +7,7 @@ import time
 
 
 def server(program, folder, *options, **variables):
-    """Its secret and what it says are in `folder`, as `secret` and `log`."""
+    """Starts the server; its secret and its output are in `folder`, as `secret` and `log`."""
     environment = {"PATH": "/usr/bin:/bin", "HOME": str(folder)} | variables
     log = (folder / "log").open("wb")
     return subprocess.Popen(
@@ -31,7 +31,7 @@ def port_of(process, folder):
 
 
 def comes_to_say(folder, words, after=0):
-    """Whether the server says `words`, sooner or later, behind the first `after` characters."""
+    """Waits until the server's output after the first `after` characters contains `words`; returns whether it does."""
     for _ in range(600):
         if words in said(folder)[after:]:
             return True

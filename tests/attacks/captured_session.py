@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whoever captures the packets of a session reads nothing: no texel, no path, no call, no shader.
+"""Captured packets of a session must reveal nothing: no texel, no path, no call, no shader.
 
     captured_session.py UNDERSTUDY UNDERSTUDY-VIEWER
 
-In a network of its own, whose packets are all captured: `render`, a viewer with its own OpenGL, and one whose calls travel. The same
-with --plain shows that the capture would find what is looked for.
+Runs in a network namespace whose packets are all captured: `render`, a viewer with its own OpenGL, and a viewer with remote
+OpenGL. The same runs with --plain show that the search would find the data.
 """
 
 import os
@@ -22,13 +22,13 @@ from own_namespaces import go_on_inside
 
 SIDE = 48
 ETH_P_ALL = 3
-PROBE = 16  # bytes in a row
-# What the streams of calls hold as text: sources of shaders, names that they ask for.
+PROBE = 16  # consecutive bytes
+# Text in the streams of calls: shader sources, and names in queries.
 CALL_WORDS = [b"uniform", b"gl_FragColor", b"gl_TexCoord", b"#version"]
 
 
 class Capture:
-    """All packets of the loopback device, with their TCP payloads in the order in which they came."""
+    """All packets of the loopback device, with their TCP payloads in order of arrival."""
 
     def __init__(self):
         self.socket = socket.socket(socket.AF_PACKET, socket.SOCK_DGRAM, socket.htons(ETH_P_ALL))
@@ -45,7 +45,7 @@ class Capture:
                 packet, address = self.socket.recvfrom(1 << 18)
             except TimeoutError:
                 continue
-            # Each packet of this device is seen leaving and arriving.
+            # Each packet of this device is seen twice, when leaving and when arriving.
             if address[2] != socket.PACKET_OUTGOING and packet[0] >> 4 == 4 and packet[9] == socket.IPPROTO_TCP:
                 self.take(packet)
 
@@ -54,7 +54,7 @@ class Capture:
         self.streams.setdefault(segment[:4], bytearray()).extend(segment[(segment[12] >> 4) * 4 :])
 
     def finish(self, port):
-        """Payloads to and from `port`."""
+        """Ends the capture; returns the payloads to and from `port`."""
         self.stopped = True
         self.thread.join()
         self.socket.close()
@@ -62,7 +62,7 @@ class Capture:
 
 
 def sessions(understudy, viewer, folder, volume, texels, options):
-    """What a server's clients and it send each other, and by what of it they can be told."""
+    """Runs sessions; returns the number of captured bytes and how often each kind of content was found in them."""
     process = server(understudy, folder, "--gl-server", "--data", volume.parent, *options, **forwarded())
     try:
         port = port_of(process, folder)
@@ -96,7 +96,7 @@ def forwarded():
 def main():
     go_on_inside(["ip", "link", "set", "lo", "up"])
     understudy, viewer = sys.argv[1:3]
-    # Nothing is gained by compressing it, so that it travels as it is.
+    # Incompressible, so that the texels are transmitted unchanged.
     texels = random.Random(1).randbytes(SIDE**3)
     results = {}
     for options in (["--plain"], []):

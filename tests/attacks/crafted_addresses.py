@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Traces whose calls name addresses of their own choosing: replay, trim and print refuse, and name the call.
+"""Traces whose calls contain crafted addresses: replay, trim and print must refuse them and name the call.
 
     crafted_addresses.py UNDERSTUDY TRACE
 """
@@ -14,12 +14,12 @@ from trace_blocks import Trace, stable_id
 ADDRESS = 3 << 56  # spu/stream/record.h: ReferenceKind::address
 EVIL = 0x414141414141
 
-# The argument, from 1, that is a pointer.
+# Position of the pointer argument, counted from 1.
 CALLS = [("glTexImage3D", 10), ("glLoadMatrixf", 1), ("glGenTextures", 2), ("glShaderSource", 3), ("glGetUniformLocation", 2)]
 
 
 def crafted(data, call, argument):
-    """The trace with that pointer in every such call, and how many there were."""
+    """The trace with that pointer in every such call, and the number of these calls."""
     trace, count = Trace(data), 0
     for block in trace.blocks:
         for first, length in block.records():
@@ -35,7 +35,7 @@ def check(program, folder, call):
         ended = subprocess.run([program, *command], capture_output=True, text=True, timeout=120)
         said = ended.stdout + ended.stderr
         if ended.returncode != 0 or not any(f"{call}: " in line for line in said.splitlines()):
-            # Offsets are printed as what they would be; what is bound, print does not know.
+            # Print shows such arguments as offsets, because it does not know what is bound.
             if command[0] == "print" and ended.returncode == 0 and f"{call}(" in said:
                 continue
             raise SystemExit(f"{command[0]}, {call}: status {ended.returncode}\n{said[-2000:]}")

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One allocation, or one call of the operating system, that Understudy makes fails: the viewer shows its image.
+"""Makes one allocation, or one system call, of Understudy fail: the viewer must still show its image.
 
     failing_calls.py UNDERSTUDY UNDERSTUDY-VIEWER ENTRY-LIBRARY FAILING-CALLS PLACES
 
-The bundled viewer draws three frames in four modes, alone, and in one of them with a render node. Of its allocations
-PLACES fail, one in each run, spread evenly over all that there are; so do its reads, writes, mappings, sockets and
-threads, which are fewer. Status and image must be those of the viewer without Understudy, to 40 dB. FAILING-CALLS is the library that makes them fail (shortage/failing_calls.cc).
+The bundled viewer draws three frames: in four modes alone, and in one of them with a render node. PLACES of its allocations
+fail, one per run, spread evenly over all of them; likewise its reads, writes, mappings, sockets and threads, which are fewer.
+Status and image must equal those of the viewer without Understudy, to 40 dB. FAILING-CALLS is the library that makes calls
+fail (shortage/failing_calls.cc).
 """
 
 import concurrent.futures
@@ -18,9 +19,9 @@ import tempfile
 from pathlib import Path
 
 SIDE = 41
-WAYS = (("table", 0), ("rgba", 0), ("core", 0), ("bricks", 0), ("rgba", 1))  # of the viewer, and how many nodes
+WAYS = (("table", 0), ("rgba", 0), ("core", 0), ("bricks", 0), ("rgba", 1))  # viewer mode, and number of nodes
 LEAST_DECIBELS = 40
-PATIENCE_SECONDS = 600  # a machine may be busy; a viewer takes half a second
+PATIENCE_SECONDS = 600  # for a busy machine; a viewer takes half a second
 AT_ONCE = 2
 
 
@@ -50,12 +51,13 @@ class Viewer:
     def draw_under_shortage(self, mode, nodes, image, **environment):
         if nodes == 0:
             return self.draw(mode, image, LD_PRELOAD=f"{self.failing} {self.entry}", **environment)
-        # The auditor's libraries live in a namespace of their own, where the failing calls would not find theirs.
+        # The auditor's libraries are loaded into a separate namespace, where the library of failing calls would not
+        # affect them.
         launcher = [self.understudy, "run", "--injection", "preload", "-n", nodes, "--"]
         return self.draw(mode, image, launcher, LD_PRELOAD=self.failing, **environment)
 
     def count(self, mode, nodes, what):
-        """How many such calls there are when none fails."""
+        """The number of such calls if none fails."""
         file = self.folder / "count"
         file.unlink(missing_ok=True)
         self.draw_under_shortage(mode, nodes, self.folder / "unused.png", FAIL_WHAT=what, FAIL_COUNT=str(file))
@@ -69,7 +71,7 @@ class Viewer:
         return float(found[1]) if found else None
 
     def trouble(self, mode, nodes, bare, what, number):
-        """What is wrong when that call fails; and whether one did."""
+        """An error message if the run with this failing call went wrong, and whether a call failed."""
         image = self.folder / f"{mode}.{nodes}.{what}.{number}.png"
         try:
             result = self.draw_under_shortage(mode, nodes, image, FAIL_WHAT=what, FAIL_NTH=str(number))
@@ -104,7 +106,7 @@ def main():
                 print(f"{way}: {total} calls for {what}, {len(answers)} runs, {len(bad)} went wrong", flush=True)
     for line in wrong[:20]:
         print(line)
-    # Threads share the work anew in each run, so the last numbers are not always reached.
+    # Threads divide the work differently in each run, so the last numbers are not always reached.
     if failed < 0.9 * runs:
         raise SystemExit(f"only in {failed} of {runs} runs a call failed")
     return len(wrong) > 0

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One allocation that Understudy makes fails in a viewer that others wrote: it shows its image.
+"""Makes one allocation of Understudy fail in third-party viewers: the viewer must still show its image.
 
     failing_viewers.py UNDERSTUDY ENTRY-LIBRARY FAILING-CALLS PLACES
 
-UNDERSTUDY_VIEWERS names the program that starts viewers (CONTRIBUTING.md, "Add a viewer"). Of the allocations of each viewer
-PLACES fail, one in each run: half of them spread evenly over the first, in which the volume is recognised, and half over
-all. The image must be that of the viewer without Understudy, to 40 dB. FAILING-CALLS is the library that makes them fail
+UNDERSTUDY_VIEWERS names the program that starts viewers (CONTRIBUTING.md, "Add a viewer"). PLACES allocations of each viewer
+fail, one per run: half of them spread evenly over the first ones, in which the volume is recognised, and half over all. The
+image must equal that of the viewer without Understudy, to 40 dB. FAILING-CALLS is the library that makes calls fail
 (shortage/failing_calls.cc).
 """
 
@@ -46,7 +46,7 @@ class Viewer:
         return int.from_bytes(file.read_bytes(), "little")
 
     def trouble(self, bare, number):
-        """What is wrong when that allocation fails; and whether one did."""
+        """An error message if the run with this failing allocation went wrong, and whether one failed."""
         image = self.folder / f"{self.name}.{number}.png"
         try:
             result = self.under_shortage(image, f"FAIL_NTH={number}")

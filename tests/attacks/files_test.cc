@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clients with the secret who ask for files of the server's user: they get those of the folders that it named,
-// by whatever name they ask, and nothing else.
+// Clients with the secret that request files of the server's user: they get files in the folders that the
+// server named, under any path, and no others.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -79,7 +79,7 @@ TEST_F(Files, OfAFolderAreReadAndNoOthers) {
     }
   }
   EXPECT_NO_THROW(volume::open_volume("synthetic:4x4x4", {}, files));
-  // Without folders to choose from, all.
+  // Without a list of folders, all files may be read.
   EXPECT_NO_THROW(volume::open_volume(file("data/relative.nrrd")));
 }
 
@@ -94,7 +94,7 @@ TEST_F(Files, AFolderThatIsNotThereIsSaid) {
   EXPECT_THROW(volume::ReadableFiles{folders}, volume::FileError);
 }
 
-// Where the kernel has no openat2, no link is followed at all.
+// Without the kernel's openat2, links are not followed at all.
 TEST_F(Files, AreFoundStepByStepToo) {
   const FileDescriptor folder(::open(file("data").c_str(), O_PATH | O_DIRECTORY));
   const auto opens = [&](const std::string& path) {
@@ -108,7 +108,7 @@ TEST_F(Files, AreFoundStepByStepToo) {
     EXPECT_FALSE(opens(path)) << path;
 }
 
-/// Why the server does not load `path`; empty when it does.
+/// Why the server does not load `path`; empty if it does.
 std::string refusal(LoadingService& service, const std::string& path) {
   LoadRequest request;
   request.volume.id = 7;
@@ -130,7 +130,7 @@ TEST_F(Files, AClientOfAServerGetsThoseOfItsDataFoldersAlone) {
   for (const std::string& path : allowed()) EXPECT_EQ(refusal(*service, path), "") << path;
   for (const std::string& path : forbidden())
     EXPECT_THAT(refusal(*service, path), HasSubstr("lies in none of the folders")) << path;
-  // The command that everybody uses says the same.
+  // The command-line program reports the same.
   const auto render = [&](const std::string& volume) {
     return run({(clients::programs / "understudy").string(), "render", volume, "--connect", server.socket(),
                 "--size", "16x16", "--out", file("out.png").string()});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How programs and libraries are built: an error in one of them should not be worth more than its end.
+// Hardening options of programs and libraries: an exploited error should achieve no more than ending the
+// process.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,7 +40,7 @@ TEST_F(Hardening, OfEveryProgramAndLibrary) {
     EXPECT_THAT(segments, HasSubstr("GNU_RELRO")) << binary;
     EXPECT_THAT(segments, Not(HasSubstr("RWE"))) << binary << " has memory that is written and executed";
     EXPECT_THAT(readelf("-d", binary), HasSubstr("NOW")) << binary << " is bound lazily";
-    // Both programs that can lie anywhere, and libraries.
+    // Position-independent programs, and libraries.
     EXPECT_THAT(readelf("-h", binary), HasSubstr("DYN")) << binary;
   }
 }

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A rank, mpirun, the GL server or the launcher is killed at a random moment of a run: nothing of the run stays.
+"""Kills a rank, mpirun, the GL server or the launcher at a random moment of a run: nothing of the run may remain.
 
     killed_processes.py UNDERSTUDY UNDERSTUDY-VIEWER RUNS SEED
 
-RUNS of each, with processes and /dev/shm of its own. Whoever was killed, the run ends.
+Makes RUNS runs for each of them, in separate namespaces for processes and /dev/shm. The run must end in every case.
 """
 
 import os
@@ -22,12 +22,12 @@ FRAMES = 20
 PATIENCE_SECONDS = 120
 YOUNG_SECONDS = 10  # apps/understudy/launch/run_folder.cc
 SHARED_MEMORY = Path("/dev/shm")
-# By the words of its command line; None: the launcher, which is started here.
+# Identified by their command lines; None: the launcher, which is started here.
 VICTIMS = {"rank": "understudy-node", "mpirun": "mpirun", "GL server": "gl-server", "launcher": None}
 
 
 def processes():
-    """The command lines of all that runs here, but for this program."""
+    """The command lines of all running processes but this one."""
     found = {}
     for folder in Path("/proc").iterdir():
         if folder.name.isdigit() and int(folder.name) != os.getpid():
@@ -41,7 +41,7 @@ def processes():
 
 
 def victims_of(word, launcher):
-    """A process for each that is to be killed; the program of a process is looked at, not what it was asked to start."""
+    """Process ids of possible victims, by the program that runs, not by the arguments of programs that start it."""
     if word is None:
         return [launcher]
     if word == "gl-server":
@@ -82,7 +82,7 @@ class Runs:
         return time.monotonic() - begun
 
     def kill_in(self, victim, moment):
-        """How many were there to be killed."""
+        """Runs and kills; returns how many processes were killed."""
         process = self.start(*self.options(victim))
         time.sleep(moment)
         killed = victims_of(VICTIMS[victim], process.pid)[:1] if process.poll() is None else []
@@ -95,13 +95,13 @@ class Runs:
         return len(killed)
 
     def clean_up(self):
-        """What a killed launcher could not remove, the next one does that starts when it is old enough."""
+        """Leftovers of a killed launcher are removed by the next launcher that starts when they are old enough."""
         time.sleep(YOUNG_SECONDS + 2)
         if self.start(frames=1).wait(PATIENCE_SECONDS) != 0:
             raise SystemExit(f"the run after killed launchers fails:\n{self.said()}")
 
     def left(self, *folders):
-        """What of a run is still there, after some time for it to go."""
+        """What is left of a run after some time to end."""
         for _ in range(100):
             left = [f"process {pid}: {line}" for pid, line in processes().items()]
             left += [str(path) for folder in folders for path in folder.rglob("*")]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Traces whose drawable is larger than windows are: the record is refused, and no memory is taken for it.
+"""Traces whose drawable is larger than any window: the record is refused, and no memory is allocated for it.
 
     large_drawable.py UNDERSTUDY TRACE
 
-A mutated trace claimed 7·10^16 pixels a side. It was played with 16,384, for which the driver took 2 GiB.
+A mutated trace claimed 7·10^16 pixels per side. It was played with 16,384, for which the driver allocated 2 GiB.
 """
 
 import os
@@ -19,7 +19,7 @@ SIZES = [(16384, 16384), (16385, 1), (1, 2**63), (2**32, 2**32), (72057594037927
 
 
 def claiming(data, width, height):
-    """The trace with another size of its first drawable."""
+    """The trace with a different size of its first drawable."""
     trace = Trace(data)
     for block in trace.blocks:
         for first, _ in block.records():
@@ -30,7 +30,7 @@ def claiming(data, width, height):
 
 
 def replayed(program, data):
-    """What was said, and the MiB that a process had at most."""
+    """The output, and the peak memory of a process in MiB."""
     with tempfile.NamedTemporaryFile(suffix=".ust") as trace, tempfile.TemporaryFile() as output:
         trace.write(data)
         trace.flush()

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A program that draws a volume in one context after another, and destroys each: nothing of them stays in memory.
+"""A program that draws a volume in one context after another and destroys each: their memory must be released.
 
     left_behind.py UNDERSTUDY CONTEXTS COUNT
 
 CONTEXTS (contexts/contexts.cc) draws in COUNT contexts from glBegin, from buffers and from display lists. Every volume is
-substituted, and no context leaves more than 20 KiB behind. Mesa keeps what is drawn from in feedback mode.
+substituted, and no context may leave more than 20 KiB behind. In feedback mode, Mesa keeps what is drawn from.
 """
 
 import os
@@ -20,7 +20,7 @@ PATIENCE_SECONDS = 3000
 
 
 def trouble_with(words, environment, count):
-    """What is wrong with one run; nothing if that is nothing."""
+    """An error message for one run; None if there is no error."""
     result = subprocess.run(words, env=environment, capture_output=True, text=True, timeout=PATIENCE_SECONDS, check=False)
     left = re.search(r"(-?[\d.]+) KiB a context", result.stdout)
     shown = re.search(r"(\d+) substituted", result.stderr)
@@ -40,7 +40,8 @@ def main():
         environment = {name: value for name, value in os.environ.items() if not name.startswith("UNDERSTUDY")}
         environment |= {"EGL_PLATFORM": "surfaceless", "UNDERSTUDY_SPEED_GUARD": "off", "XDG_RUNTIME_DIR": folder}
         for kind in KINDS:
-            # An allocator takes and gives back a megabyte now and then: that is not so in every run, and a leak is.
+            # An allocator reserves or releases a megabyte now and then. Unlike a leak, this does not happen in every
+            # run.
             for _ in range(TRIES):
                 trouble = trouble_with([understudy, "run", "--", contexts, kind, count], environment, int(count))
                 if trouble is None:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A group of nodes whose mpirun is killed: the memory that its ranks shared goes with the run, and at the
-// latest when the next group starts.
+// A node group whose mpirun is killed: the memory that its ranks shared is removed with the run, at the latest
+// when the next group starts.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 class Leftovers : public clients::CommandTest {
  protected:
-  /// Files through which ranks share memory.
+  /// Number of files through which ranks share memory.
   std::ptrdiff_t segments() const {
     std::error_code gone;
     std::ptrdiff_t count = 0;

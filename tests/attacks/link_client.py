@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The client's end of a TCP link: handshake, records and messages (compositor/transport/tcp/handshake.h, session_keys.h, record.h,
-tcp_message_reader.h; 127.0.0.1 only)."""
+"""The client's end of a TCP connection: handshake, records and messages (compositor/transport/tcp/handshake.h,
+session_keys.h, record.h, tcp_message_reader.h; 127.0.0.1 only)."""
 
 import ctypes
 import hashlib
@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def protocol(header):
-    """(number, version), as the header says them."""
+    """(number, version), as given in the header."""
     found = re.search(r"return \{(\d+), (\d+), ", (ROOT / header).read_text(encoding="utf-8"))
     return int(found[1]), int(found[2])
 
@@ -47,11 +47,11 @@ def stream(name, *arguments):
 
 
 class Closed(Exception):
-    """The server ended the connection."""
+    """The server closed the connection."""
 
 
 class Sealer:
-    """One direction's records; `seal` gives what is to be sent."""
+    """Encrypts the records of one direction; `seal` returns what is to be sent."""
 
     def __init__(self, key):
         self.state = ctypes.create_string_buffer(stream("statebytes"))
@@ -81,7 +81,7 @@ class Opener:
 
 class LinkClient:
     def __init__(self, port, secret, to_server, flags=0, pretends=0):
-        """`pretends`: flags that the proof covers and that the server is not told (somebody on the way)."""
+        """`pretends`: flags that the proof covers but the server does not receive, as after tampering in transit."""
         self.socket = socket.create_connection(("127.0.0.1", port), timeout=30)
         self.opener = self.sealer = None
         self.opened = b""
@@ -138,7 +138,7 @@ class LinkClient:
         return b"".join(self.sealer.seal(plain[at : at + RECORD_BYTES]) for at in range(0, len(plain), RECORD_BYTES))
 
     def receive(self):
-        """(name, payload); compressed blocks, which no answer here has, as zeros."""
+        """(name, payload); compressed blocks, which do not occur in these answers, as zeros."""
         while True:
             _, *number, size, _ = MESSAGE_HEAD.unpack(self.receive_bytes(MESSAGE_HEAD.size))
             number = tuple(number)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mutated traces through replay, trim and print: no crash of ours, no hang, no memory without measure.
+"""Mutated traces through replay, trim and print: no crash of Understudy, no hang, no excessive memory.
 
     mutated_traces.py UNDERSTUDY COUNT SEED TRACE...
 
-A driver that crashes says so by status 5 and the call (apps/understudy/gl_server/guarded_player.h); such runs are counted and
-listed. Anything else but success and a refusal fails, and so does a process that takes 1 GiB more than the largest does for the
-traces as they are.
+A crash of the driver is reported by status 5 and the call (apps/understudy/gl_server/guarded_player.h); such runs are counted
+and listed. Any result other than success, a refusal or a driver crash is a failure, and so is a process that takes 1 GiB more
+than the largest process takes for the unmodified traces.
 """
 
 import collections
@@ -21,7 +21,7 @@ from pathlib import Path
 from trace_blocks import Trace
 
 MOST_KIB_MORE = 1 << 20
-LIMIT_S = 120  # for a hang; nothing here takes a second
+LIMIT_S = 120  # detects hangs; nothing here takes a second
 REFUSED = (0, 1, 2)
 DRIVER_CRASHED = 5
 
@@ -98,7 +98,7 @@ def mutated(data, chance):
 
 
 def ended(process):
-    """(exit status or "hangs", KiB that it or a child of it had at most)"""
+    """(exit status or "hangs", peak memory in KiB of the process or its children)"""
     give_up = time.monotonic() + LIMIT_S
     while True:
         pid, status, usage = os.wait4(process.pid, os.WNOHANG)
@@ -113,7 +113,7 @@ def ended(process):
 
 
 def ending(program, command):
-    # LeakSanitizer would tell of the driver's leaks; what it is asked for here are crashes.
+    # LeakSanitizer would report the driver's leaks; only crashes are of interest here.
     environment = {**os.environ, "ASAN_OPTIONS": "detect_leaks=0:intercept_tls_get_addr=0"}
     with tempfile.TemporaryFile() as output:
         process = subprocess.Popen([program, *command], stdout=subprocess.DEVNULL, stderr=output, env=environment)
@@ -126,7 +126,7 @@ def ending(program, command):
 
 
 def play(program, data, name, folder):
-    """(name, command, ending, what was said, KiB) of the three commands."""
+    """(name, command, ending, output, KiB) of the three commands."""
     trace, out = folder / f"{name}.ust", folder / f"{name}.out"
     trace.write_bytes(data)
     commands = [["replay", "--native", trace], ["trim", trace, "--frames", "2-2", "-o", out], ["print", trace]]

@@ -16,7 +16,7 @@ inline bool can_be_another_user() {
   return ::geteuid() == 0;
 }
 
-/// A process of another user that does `work`; its exit status is what that returns, 0 to 255.
+/// A process of another user that runs `work`; its exit status is the result of `work`, 0 to 255.
 class OtherUser {
  public:
   explicit OtherUser(const std::function<int()>& work) : process_(::fork()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Other users of this machine: who listens where nodes are expected gets nothing, who connects is not served,
-// and what others could change is not believed.
+// Other users of this machine: a foreign listener at the nodes' socket receives nothing, foreign clients are
+// not served, and files that others could change are not trusted.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ Deadline soon() {
 class OtherUsers : public clients::CommandTest {
  protected:
   OtherUsers() {
-    // All users can come here, as to /tmp.
+    // All users can access this folder, like /tmp.
     fs::permissions(file(""), fs::perms::owner_all | fs::perms::group_exec | fs::perms::others_exec);
     fs::create_directory(shared());
     ::chmod(shared().c_str(), 01777);
@@ -49,7 +49,7 @@ class OtherUsers : public clients::CommandTest {
   std::string socket() const { return shared() / "nodes.sock"; }
 };
 
-/// Listens for one client and returns how many bytes came, 200 at most; 201 where nobody came.
+/// Listens for one client; returns the number of bytes received, at most 200, or 201 without a client.
 int bytes_received_at(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -107,7 +107,7 @@ TEST_F(OtherUsers, WhoConnectsIsNotServed) {
     broker.step(std::chrono::milliseconds(5));
     return broker.clients_waiting() == 1;
   }));
-  // The other one may have come behind this one.
+  // The other client may have connected after this one.
   for (int i = 0; i < 20; ++i) broker.step(std::chrono::milliseconds(5));
   EXPECT_EQ(client.finish(), 0);
   EXPECT_EQ(broker.clients_waiting(), 1U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// No file is removed that was not made here.
+// Files that Understudy did not create are not removed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Namespaces for a program that must see nothing of the machine beside what it starts: network, mounts, processes."""
+"""Network, mount and process namespaces for a program that must be isolated from the rest of the machine."""
 
 import os
 import subprocess
@@ -10,8 +10,8 @@ INSIDE = "IN_OWN_NAMESPACES"
 
 
 def go_on_inside(*preparation):
-    """Goes on as root in namespaces of its own, where `preparation` (commands) was done; ends the program with SKIPPED where they
-    are not allowed."""
+    """Continues as root in separate namespaces, after running the commands in `preparation`. Ends the program with SKIPPED if
+    namespaces are not permitted."""
     if os.environ.get(INSIDE):
         for command in preparation:
             subprocess.run(command, check=True)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program with more rights than its user takes no driver from its user's environment.
+// A program with more privileges than its user must not load a driver named in the environment.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -20,7 +20,7 @@ TEST_F(PrivilegedProgram, LoadsNoDriverThatTheEnvironmentNames) {
   const std::map<std::string, std::string> environment{{"UNDERSTUDY_DRIVER_DIR", FOREIGN_DRIVERS}};
   const fs::path copy = file("copy");
   fs::copy_file(PRIVILEGED, copy);
-  // The driver is where the variable says: without more rights it is loaded.
+  // The variable names the driver's folder: without extra privileges, the driver is loaded.
   EXPECT_THAT(run({copy.string()}, environment).out, HasSubstr("foreign code runs"));
 
   constexpr gid_t other_group = 65534;

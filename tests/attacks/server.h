@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy serve` with one node, or as many as are asked for, at a socket in the test's folder.
+// `understudy serve` with one or more nodes, at a socket in the test's folder.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ namespace attacks {
 
 class Server {
  public:
-  /// In the folder of a clients::CommandTest. Throws std::runtime_error when it does not start.
+  /// Uses the folder of a clients::CommandTest. Throws std::runtime_error if the server does not start.
   explicit Server(const std::filesystem::path& folder, const clients::Words& options = {}, int nodes = 1)
       : socket_(folder / "nodes.sock"),
         process_({command(options, nodes), {{"XDG_RUNTIME_DIR", folder / "runtime"}}}, own_folder(folder)) {
@@ -39,7 +39,7 @@ class Server {
     words.insert(words.end(), options.begin(), options.end());
     return words;
   }
-  /// Of its output.
+  /// Folder for its output.
   static std::filesystem::path own_folder(const std::filesystem::path& folder) {
     std::filesystem::create_directory(folder / "server");
     return folder / "server";

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A client with the secret names addresses in its stream: nothing of the OpenGL server's memory comes back.
+"""A client with the secret sends addresses in its stream: no memory of the OpenGL server may be returned.
 
     server_memory.py UNDERSTUDY
 
-The session goes on, or ends; the server says which call was left out.
+The session continues or ends; the server reports which call was skipped.
 """
 
 import struct
@@ -28,7 +28,7 @@ def record(name, *arguments):
 
 
 class Session:
-    """Calls to a GL server (spu/remote/gl_server_protocol.h)."""
+    """Makes calls on a GL server (spu/remote/gl_server_protocol.h)."""
 
     def __init__(self, port, secret):
         self.chunks = 0
@@ -50,7 +50,7 @@ class Session:
 
 
 def server_of_client(process):
-    """The newest process of the server's that is a GL server, and its stack."""
+    """Process id of the newest child of the server's GL server."""
     listed = subprocess.run(["ps", "-eo", "pid,ppid,args"], capture_output=True, text=True, check=True).stdout
     rows = [line.split(None, 2) for line in listed.splitlines()[1:]]
     servers = [int(row[0]) for row in rows if row[1] == str(process.pid) and "understudy gl-server" in row[2]]
@@ -59,7 +59,7 @@ def server_of_client(process):
 
 
 def environment_address(pid):
-    # Field 50 of proc(5), env_start; the page that it lies in, since the next may be none.
+    # Field 50 of proc(5), env_start, rounded down to its page, because the next page may not be mapped.
     fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return int(fields[47]) & -BYTES
 
@@ -85,7 +85,7 @@ def by_matrix(session, address):
 
 
 def by_fence(session, address):
-    """No address of its own choosing, but one that the server itself tells."""
+    """Sends no address, but checks that the server does not disclose one."""
     answer = session.make(record("glFenceSync", 0x9117, 0), answer=True)
     words = struct.unpack(f"<{len(answer) // 8}Q", answer[: len(answer) // 8 * 8])
     told = [word for word in words if 0x500000000000 < word < 0x7FFFFFFFFFFF]
@@ -101,7 +101,7 @@ def memory_of(pid, address):
 
 
 def attack(session, pid, attempt, address):
-    """How many bytes in a row came back."""
+    """Returns how many bytes of the server's memory came back, and whether the session continues."""
     real = memory_of(pid, address)
     try:
         answer = attempt(session, address)
@@ -131,7 +131,7 @@ def main():
                     if not goes_on:
                         session = Session(port, secret)
                         pid = server_of_client(process)
-            # The next one is served as ever.
+            # The next client is served normally.
             if not Session(port, secret).make(record("glGetError"), answer=True):
                 raise SystemExit("the next client got no answer")
         finally:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One client that asks for all: more samples than anybody needs, images without end, volumes until memory is
-// full, groups of nodes that die again and again. The others have their share, and the service goes on.
+// A client that requests too much: more samples than anybody needs, endless images, volumes until memory is
+// full, node groups that die repeatedly. Other clients keep their share, and the service continues.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -84,10 +84,10 @@ TEST(TurnsOfClients, NobodyRestsForWhoRestsItself) {
   turns.served(1, start, start + 5ms, false);
   turns.served(2, start + 5ms, start + 1005ms, true);
   ASSERT_EQ(turns.rests_until(2), start + 2005ms);
-  // The nodes would be idle meanwhile.
+  // Otherwise the nodes would be idle in the meantime.
   turns.served(1, start + 1005ms, start + 1105ms, false);
   EXPECT_LE(turns.rests_until(1), start + 1105ms);
-  // The other one may ask again in the midst of this rest.
+  // The other client may send a request during this rest.
   turns.served(1, start + 1900ms, start + 1980ms, false);
   EXPECT_EQ(turns.rests_until(1), start + 1980ms + 55ms);
 }
@@ -100,7 +100,7 @@ TEST(TurnsOfClients, WhoIsRefusedRestsLongerThanOthersRestForIt) {
   EXPECT_EQ(turns.rests_until(2), start + 101ms);
   turns.served(1, start + 101ms, start + 102ms, true);
   EXPECT_EQ(turns.rests_until(1), start + 102ms + limits::short_request);
-  // One that is given up after a while has had its turn.
+  // A request that is given up after some time counts as served.
   turns.served(1, start + 200ms, start + 1200ms, true);
   EXPECT_EQ(turns.rests_until(1), start + 2200ms);
   turns.served(2, start + 2200ms, start + 2300ms, false);
@@ -111,7 +111,7 @@ TEST(TurnsOfClients, WhoIsAloneNeverRests) {
   Turns turns;
   const Deadline start = Clock::now();
   turns.served(1, start, start + 5ms, false);
-  // The other one has said nothing for long.
+  // The other client has been silent for a long time.
   turns.served(2, start + 60s, start + 63s, false);
   EXPECT_LE(turns.rests_until(2), start + 63s);
 }
@@ -179,7 +179,7 @@ TEST(MemoryOfClients, IsThatOfTheMachineOrOfItsControlGroup) {
   EXPECT_EQ(client_limits(1, 6s).bytes_of_client, alone.bytes_in_all / 2);
 }
 
-/// Rays that do not end, through `samples` planes.
+/// Rays without termination through `samples` planes.
 volume::RenderRequest request_of(int edge, int samples) {
   volume::RenderRequest request;
   request.volume = 7;

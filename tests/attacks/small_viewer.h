@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bundled viewer on a volume that is quickly drawn.
+// The bundled viewer with a volume that is drawn quickly.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace attacks {
 
-/// Makes the volume, 24³ bytes, at `volume`.
+/// Command line of the viewer; creates the volume, 24^3 bytes, at `volume`.
 inline clients::Words small_viewer(const std::filesystem::path& volume, int frames = 3) {
   constexpr int edge = 24;
   std::string texels;

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Somebody on the way changes, repeats or leaves out what a client sends, or wants it unencrypted: nothing of it is believed.
+"""Data in transit is changed, repeated or omitted, or encryption is declined in the client's name: all of this is refused.
 
     tampered_session.py UNDERSTUDY
 
-The session ends, the server says why, and the next client is served.
+The session ends, the server reports why, and the next client is served.
 """
 
 import sys
@@ -19,7 +19,7 @@ WRONG_SECRET, NOT_PLAIN = 1, 4  # compositor/transport/tcp/handshake.h: Admissio
 
 
 def hello_record(link):
-    """The record with which an application greets the nodes, made and not sent."""
+    """The record with which an application greets the nodes, without sending it."""
     sent = []
     link.socket, socket = type("Kept", (), {"sendall": lambda _, record: sent.append(record)})(), link.socket
     link.send("hello_client")
@@ -102,7 +102,7 @@ def main():
                 print(f"{attack.__name__}: {said(folder)[before:].strip()}")
                 if not greeted(port, secret):
                     raise SystemExit(f"{attack.__name__}: the next client is not served")
-            # No less than both ends want, whoever says so.
+            # Encryption is used unless both ends decline it; forged flags invalidate the proof.
             expect_verdict(port, secret, NOT_PLAIN, flags=PLAIN)
             expect_verdict(port, secret, WRONG_SECRET, flags=PLAIN, pretends=PLAIN)
             expect_verdict(port, secret, WRONG_SECRET, flags=ONLY_ASKS, pretends=PLAIN)

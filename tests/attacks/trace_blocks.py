@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Traces as lists of blocks: taken apart, changed, and packed again with right checksums (spu/stream/trace_file.h)."""
+"""Traces as lists of blocks: parsed, modified, and packed again with valid checksums (spu/stream/trace_file.h)."""
 
 import ctypes
 import struct
@@ -45,7 +45,7 @@ def stable_id(name):
 class Block:
     def __init__(self, magic, frames, number, record_words, words):
         self.magic, self.frames, self.number = magic, frames, number
-        self.record_words = record_words  # the rest is payload
+        self.record_words = record_words  # the remaining words are payload
         self.words = words
 
     def records(self):

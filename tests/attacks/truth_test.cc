@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run says at its end when something went wrong on its way: half chains, figures that could not be kept,
-// a GL server that is gone.
+// What a run reports at its end if something went wrong: incomplete chains, counters that could not be stored,
+// a lost GL server.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ TEST_F(Truth, AChainForViewersElsewhereIsRefusedBeforeTheViewerStarts) {
   EXPECT_FALSE(fs::exists(file("started")));
 }
 
-// The same without a launcher, which would refuse it.
+// The same without a launcher, which would refuse the chain.
 TEST_F(Truth, AViewerWhoseChainCannotBeMadeDrawsByItself) {
   const Outcome bare = run_well(viewer() + Words{"--screenshot", file("bare.png")});
   const Outcome outcome =
@@ -51,7 +51,7 @@ TEST_F(Truth, AViewerWhoseChainCannotBeMadeDrawsByItself) {
 }
 
 TEST_F(Truth, FiguresThatCouldNotBeWrittenAreNotZero) {
-  // A runtime folder of 200 KiB, in a mount namespace of its own; a process's figures are larger.
+  // A runtime folder of 200 KiB in a separate mount namespace; the counters of a process are larger.
   const std::string words = fmt::format(
       "unshare --mount --map-root-user sh -c 'mount -t tmpfs -o size=200k,mode=700 none {} && exec \"$0\" "
       "\"$@\"' "
@@ -89,7 +89,7 @@ class LostServer : public Truth {
     return frames;
   }
 
-  /// Runs a viewer whose GL server is killed when it has shown some frames.
+  /// Runs a viewer and kills its GL server after some frames.
   Outcome lose_server(const Words& options) {
     Words words = clients::RemoteViewer::without_opengl() + viewer(2000);
     std::erase(words, "--offscreen");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The image is right: nearer to the slices that the viewer meant than the viewer's own, the same on any
-// number of ranks, and where opaque geometry stands before the volume.
+// Accuracy of images: closer to the exact slices than the viewer's own image, the same on any number of ranks,
+// and correct with opaque geometry in front of the volume.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ std::vector<double> channels(const viewer_test::Image& image) {
   return {image.rgb.begin(), image.rgb.end()};
 }
 
-/// The composited float frame over the viewer's background; channels 0 to 255.
+/// Composites the float frame over the viewer's background; channels 0 to 255.
 std::vector<double> over_background(const RgbaImage& frame, const std::vector<double>& background) {
   std::vector<double> result;
   for (int y = 0; y < frame.height; ++y)
@@ -84,7 +84,7 @@ class Ranks : public CommandTest {};
 
 constexpr int accuracy_frames = 3;
 
-/// Largest difference of any channel, alpha among them, of any frame.
+/// Largest difference of any channel, including alpha, over all frames.
 double largest_difference(const std::filesystem::path& a, const std::filesystem::path& b) {
   double largest = 0;
   for (int number = 0; number < accuracy_frames; ++number) {

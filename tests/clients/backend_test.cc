@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same images from nodes that cast rays on the CPU, by OpenGL, or by whichever is faster, and a report
-// that says which it was and why.
+// Nodes that cast rays on the CPU, in OpenGL, or by whichever is faster give the same images, and the report
+// states which backend was used and why.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@ using testing::SizeIs;
 
 class Backend : public CommandTest {
  protected:
-  /// The last of so many frames on two nodes, and what the report says of backends. A view that rests would be
-  /// drawn once.
+  /// The last of `frames` frames on two nodes, and the report's lines on backends. The view changes in every
+  /// frame, since an unchanged view would be drawn only once.
   std::vector<std::string> draw(const std::string& backend, const std::string& frames,
                                 const std::string& image) {
     run_well(under({"-n", "2", "--backend", backend, "--report", file("r.json")}) +

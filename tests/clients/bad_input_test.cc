@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are damaged, machines that lack something: a clear message, the viewer's own status, nothing left
+// Damaged files, and machines that lack something: a clear message, the viewer's own exit status, nothing left
 // behind.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -77,7 +77,7 @@ TEST_F(BadInput, WithoutADisplayEveryViewerFailsAsItWouldAlone) {
   std::vector<Words> viewers = {{(programs / "understudy-viewer").string(), file("ball.16x16x16").string()}};
   if (missing({Need::engine, Need::osgvolume}).empty()) viewers.push_back(osgvolume());
   for (const Words& words : viewers) {
-    // osgvolume says "could not create display" and ends with status 0; that, too, is its own affair.
+    // osgvolume reports "could not create display" and exits with status 0, which must be passed on as well.
     const Outcome bare = run(words, no_display);
     for (const char* injection : {"audit", "preload", "folder"}) {
       const Outcome below = run(under({"--injection", injection}) + words, no_display);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A viewer under `understudy run --error E`: what it shows keeps the error, judged by a program of the tests
-// that knows the viewer's description and the volume's file alone.
+// A viewer under `understudy run --error E`: what it shows keeps the error, as measured by a test program that
+// uses only the viewer's description and the volume file.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 struct Volume {
   const char* name;
-  const char* file;  ///< among the volumes at hand; empty: the engine
+  const char* file;  ///< in the folder of data volumes; empty: the engine
   Words options;
 };
 
@@ -24,7 +24,7 @@ std::filesystem::path path_of(const Volume& volume) {
 
 class BudgetRun : public CommandTest {
  protected:
-  /// Eight frames of the viewer with a budget; false where the volume is not at hand.
+  /// Draws eight frames with a budget; returns false if the volume file is missing.
   bool show(const Volume& volume, const Words& budget) {
     const std::filesystem::path path = path_of(volume);
     if (!std::filesystem::exists(path)) return false;

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""calibration.py [CURVE.png]: how well the bound on tiles (docs/verification.md) tells right images from wrong ones.
+"""calibration.py [CURVE.png]: how well the bound on tiles (docs/verification.md) separates correct images from wrong ones.
 
-Right images are those that `./run modes` kept in out/modes of rows that were substituted, against the bare viewer's. Wrong
-ones are the same images with a fault: in one tile (16 × 16 pixels), in a tenth of the window, or everywhere. The bound is
-multiplied by factors; for each the share of right images that would be refused (false alarms) and of wrong ones that
-would be found is printed, and drawn into CURVE.png.
+Correct images are those of substituted rows that `./run modes` kept in out/modes, compared with the bare viewer's. Wrong images
+are the same images with a fault: in one tile (16 × 16 pixels), in a tenth of the window, or everywhere. The bound is
+multiplied by several factors. For each factor, the script prints the share of correct images that would be refused (false
+alarms) and of wrong ones that would be detected, and draws both into CURVE.png.
 """
 
 import json
@@ -20,7 +20,7 @@ FACTORS = (0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 10.0)
 
 
 def visible_tile(image, size, choice):
-    """A square that shows the volume: what differs from the image's corner, somewhere near its middle."""
+    """A square from a random pixel on that shows the volume, that is, differs from the image's corner."""
     shown = numpy.argwhere((numpy.abs(image - image[2, 2]).max(axis=2) > 24))
     if len(shown) == 0:
         return None
@@ -37,7 +37,7 @@ def part(image, size, choice):
 
 
 def faults(image, choice):
-    """Names and wrong images."""
+    """Yields names of faults and images with them."""
     height, width = image.shape[:2]
     tenth = int((height * width / 10) ** 0.5)
     background = image[2, 2]
@@ -64,7 +64,7 @@ def main():
     right, wrong = [], {}
     for row in rows:
         if any(name in "-".join(row["row"]) for name in SLICES):
-            continue  # 8 bits of the viewer's framebuffer, where the library compares floats
+            continue  # blended in the viewer's 8-bit framebuffer, while the library compares floats
         stem = ".".join(part_of_name.replace(",", "_").replace(":", "_") for part_of_name in row["row"])
         for end in (".a.png", ".b.png", ".png"):
             bare, ours = OUT / f"{stem}.bare{end}", OUT / f"{stem}.substituted{end}"
@@ -72,10 +72,10 @@ def main():
                 continue
             a, b = pixels(bare), pixels(ours)
             if a.shape != b.shape or numpy.array_equal(a, b):
-                continue  # the viewer's own
+                continue  # the viewer's own image
             right.append(severity(a, b))
             for name, image in faults(b, choice):
-                if numpy.abs(image - b).max() > 8:  # else it shows no fault
+                if numpy.abs(image - b).max() > 8:  # otherwise the fault is not visible
                     wrong.setdefault(name, []).append(severity(a, image))
     everything = [value for values in wrong.values() for value in values]
     print(f"{len(right)} right images, {len(everything)} wrong ones")

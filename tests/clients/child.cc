@@ -35,7 +35,7 @@ std::vector<std::string> environment_of(const Command& command) {
     const std::string text = *entry;
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
-    // A test says itself through which injection method a viewer goes and onto which display.
+    // Tests choose the injection method and the display of a viewer themselves.
     if (name == "LD_PRELOAD" || name == "LD_AUDIT" || name == "DISPLAY" || name.starts_with("UNDERSTUDY_"))
       continue;
     if (equals != std::string::npos) variables[name] = text.substr(equals + 1);

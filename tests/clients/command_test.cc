@@ -72,7 +72,7 @@ const char* remedy(Need need) {
   return "";
 }
 
-/// The process ids of this machine.
+/// All process ids of this machine.
 std::vector<pid_t> all_processes() {
   std::vector<pid_t> found;
   std::error_code gone;
@@ -105,7 +105,7 @@ std::string missing(std::initializer_list<Need> needs) {
 
 fs::path engine_file() {
   const fs::path installed = fs::path("/") / engine_path;
-  // Slim images leave /usr/share/doc out when they install a package; the demo then unpacks the file itself.
+  // Slim images omit /usr/share/doc when they install a package; the demo then unpacks the file itself.
   return fs::exists(installed) ? installed : fs::path(SOURCE_FOLDER) / "out/data" / engine_path;
 }
 
@@ -145,7 +145,7 @@ CommandTest::CommandTest() : runtime_(folder_.file("runtime")), abandoned_before
 
 Command CommandTest::command_of(const Words& words, std::map<std::string, std::string> environment) const {
   environment.emplace("XDG_RUNTIME_DIR", runtime_.string());
-  // What is tested must not depend on what else this machine does.
+  // Results must not depend on other load of this machine.
   environment.emplace("UNDERSTUDY_SPEED_GUARD", "off");
   return {words, environment};
 }
@@ -165,13 +165,13 @@ nlohmann::json CommandTest::json(const std::string& name) const {
 }
 
 std::vector<pid_t> CommandTest::processes(const std::string& program) const {
-  // The folder's name is in the environment of all that descends from a test, also of orphans.
+  // All descendants of a test, even orphans, have the folder's name in their environment.
   const std::string mark = "XDG_RUNTIME_DIR=" + runtime_.string();
   std::vector<pid_t> found;
   for (const pid_t pid : all_processes()) {
     const std::string environment = '\0' + contents(proc(pid, "environ"));
     if (environment.find('\0' + mark + '\0') == std::string::npos) continue;
-    // The kernel cuts names after 15 bytes.
+    // The kernel truncates names to 15 bytes.
     if (program.empty() || contents(proc(pid, "comm")) == program.substr(0, 15) + "\n") found.push_back(pid);
   }
   return found;
@@ -186,7 +186,7 @@ std::string CommandTest::leftovers() const {
     left += fmt::format("process {}: {}\n", pid, line);
   }
   for (const auto& entry : fs::recursive_directory_iterator(runtime_)) left += entry.path().string() + "\n";
-  // Other tests may run at the same time and be just about to map what they made.
+  // Concurrent tests may be about to map shared memory that they have just created.
   std::set<std::string> abandoned = abandoned_shared_memory();
   std::erase_if(abandoned, [&](const std::string& name) { return abandoned_before_.contains(name); });
   comes_true([&] {

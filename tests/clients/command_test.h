@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a test of whole programs stands on: a folder of its own, the viewers' commands, the engine's CT, and a
-// look at what is left when all is over.
+// Base of tests that run whole programs: a separate folder, the viewers' commands, the engine's CT, and a check
+// of what is left behind.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,10 +23,10 @@ using Words = std::vector<std::string>;
 
 Words operator+(Words first, const Words& second);
 
-/// Something a test cannot do without, and where it comes from.
+/// A requirement of a test.
 enum class Need { engine, mpi, x_server, osgvolume, imagemagick, apitrace, piglit };
 
-/// What of it this machine lacks, as a sentence for GTEST_SKIP; empty when all is there.
+/// Names what this machine lacks and where it comes from, for GTEST_SKIP; empty if nothing is missing.
 std::string missing(std::initializer_list<Need> needs);
 
 /// The CT of an engine, 256 x 256 x 110 bytes.
@@ -36,16 +36,16 @@ const std::filesystem::path programs = PROGRAMS;
 const std::filesystem::path libraries = LIBRARIES;
 const std::filesystem::path system_libraries = SYSTEM_LIBRARIES;
 
-/// `understudy run OPTIONS -- `, to be put in front of a viewer's command.
+/// `understudy run OPTIONS -- `, the prefix of a viewer's command.
 Words under(const Words& options = {});
 
 /// The bundled viewer on the engine, off screen, 256 x 256.
 Words engine_viewer(const std::string& mode, const Words& options);
 
-/// How far two images are apart, printed after `what`.
+/// Difference of two images, printed after `what`.
 viewer_test::Difference told(const std::string& what, const viewer_test::Image& a, const viewer_test::Image& b);
 
-/// Runs of slices that the nodes drew, over all volumes of a report.
+/// Number of runs of slices that the nodes drew, over all volumes of a report.
 int substituted(const nlohmann::json& report);
 
 class CommandTest : public testing::Test {
@@ -54,26 +54,26 @@ class CommandTest : public testing::Test {
 
   std::filesystem::path file(const std::string& name) const { return folder_.file(name); }
 
-  /// With runtime files (sockets, folders of runs) in a folder of this test's own.
+  /// With runtime files (sockets, folders of runs) in this test's folder.
   Command command_of(const Words& words, std::map<std::string, std::string> environment = {}) const;
   Outcome run(const Words& words, const std::map<std::string, std::string>& environment = {}) const;
-  /// The same, and expects status 0.
+  /// The same; expects status 0.
   Outcome run_well(const Words& words, const std::map<std::string, std::string>& environment = {}) const;
 
   nlohmann::json json(const std::string& name) const;
   viewer_test::Image png(const std::string& name) const { return viewer_test::read_png(file(name).string()); }
 
-  /// Ids of the living processes started from this test, whoever their parents are now, whose program has that
-  /// name; of all of them when it is empty.
+  /// Ids of living processes that were started from this test, whoever their parents are now, and whose program
+  /// is called `program` (empty: any).
   std::vector<pid_t> processes(const std::string& program = "") const;
 
-  /// Waits for what is on its way out, and then lists processes, sockets, folders and shared memory that are
-  /// left of the programs that were run; empty when there are none.
+  /// Waits for processes that are ending. Then lists processes, sockets, folders and shared memory that are
+  /// left of the programs that were run; empty if there are none.
   std::string leftovers() const;
 
   viewer_test::TemporaryFolder folder_;
   std::filesystem::path runtime_;
-  /// Some other program that was killed may have left them: they are none of this test's.
+  /// Leftovers of other programs that were killed earlier; they do not count for this test.
   std::set<std::string> abandoned_before_;
 };
 

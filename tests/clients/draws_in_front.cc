@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws rectangles into a window's front buffer, or into its back buffer in the midst of a frame, says "drawn"
-// and rests.
+// Draws rectangles into a window's front buffer, or into its back buffer in the middle of a frame; prints
+// "drawn" and then waits.
 //
 //   draws_in_front WAY
 #include <GL/gl.h>
@@ -38,7 +38,7 @@ void fill_left_half(Colour colour) {
   fill(colour, 0, 0, window_size / 2, window_size);
 }
 
-/// A frame that is swapped, and then something over it without a swap.
+/// Draws a frame and swaps it; the caller draws over it without a swap.
 void begin_over_a_frame(const XWindow& window) {
   fill_window(blue);
   window.swap();
@@ -52,7 +52,7 @@ void one_buffer() {
   XWindow::rest();
 }
 
-/// More images than anybody could want to see.
+/// More flushes than images that need to be shown.
 void many_flushes() {
   const XWindow window(Buffers::one);
   fill_window(blue);
@@ -92,7 +92,7 @@ void released() {
   XWindow::rest();
 }
 
-/// The back buffer is being drawn into again when the front buffer is flushed.
+/// Draws into the back buffer again before the front buffer is flushed.
 void drawn_over() {
   const XWindow window(Buffers::two);
   begin_over_a_frame(window);
@@ -118,7 +118,7 @@ void by_list() {
   XWindow::rest();
 }
 
-/// Five frames, flushed in their midst, and half of another.
+/// Five frames with flushes in between, and half of another frame.
 void back_buffer() {
   const XWindow window(Buffers::two);
   for (const Colour colour : {red, green, red, green, blue}) {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// No slice reaches the driver to be drawn: a recording of the calls below Understudy, by apitrace.
+// No slice is drawn by the driver, as shown by an apitrace recording of the calls below Understudy.
 //
-// What Understudy asks of the driver itself stays in the recording: it has the slices' vertices computed by the
-// viewer's own pipeline (feedback mode, or transform feedback without rasterisation), which makes no pixel, and
-// draws triangles over the image: its probes of the transfer function into a framebuffer of its own, and the
-// result into the window.
-// osgvolume's slices write depth besides, so its first frame has them once more, for depth alone; as nothing
-// looks at that depth, no later frame has.
+// The recording also contains Understudy's own calls. The slices' vertices are computed by the viewer's
+// pipeline (in feedback mode, or by transform feedback without rasterisation), which generates no pixels.
+// Triangles are drawn over images: probes of the transfer function into a framebuffer of Understudy's, and the
+// result into the window. osgvolume's slices also write depth, so its first frame draws them once more for
+// depth alone; as nothing reads that depth, later frames do not.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,7 +33,7 @@ class DriverCalls : public RecordingTest {
 
   std::vector<RecordedFrame> below_understudy(const RecordedLibrary& library, const Words& viewer,
                                               const std::map<std::string, std::string>& environment) const {
-    // The first frame's check against the viewer's own drawing would put its slices into a framebuffer of ours.
+    // Verification of the first frame would draw the viewer's slices into a framebuffer of Understudy's.
     return frames_in(dump_of_driver(library, {"--verify=-1"}, viewer, environment));
   }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// error_of_frame DESCRIPTION.json FRAME.pfm VOLUME [EVERY]: how far a float frame that was saved lies from the
-// integral of what the viewer meant, as JSON. Knows nothing of what drew the frame: the viewer's own
-// description tells camera, slices and table, the volume's file its values, and the integral is made of these
-// in double precision. Looks at every EVERY-th pixel across and up.
+// error_of_frame DESCRIPTION.json FRAME.pfm VOLUME [EVERY]: prints, as JSON, the error of a saved float frame
+// against the exact volume rendering integral. The integral is computed in double precision from the viewer's
+// description (camera, slices and transfer function) and the volume file alone, independently of what drew the
+// frame. Compares every EVERY-th pixel in x and y.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -26,7 +26,7 @@ namespace {
 using namespace understudy::volume;
 using Json = nlohmann::json;
 
-/// OpenGL's matrices stand column by column.
+/// OpenGL matrices are column-major.
 Matrix4 matrix_of(const Json& columns) {
   const auto c = columns.get<std::array<double, 16>>();
   Matrix4 m{};
@@ -41,8 +41,8 @@ Matrix4 placed(const Json& object_from_texture) {
   return {scale[0], 0, 0, translate[0], 0, scale[1], 0, translate[1], 0, 0, scale[2], translate[2], 0, 0, 0, 1};
 }
 
-/// The texels that the viewer makes of the file: bytes as they are, others as words from its least value to its
-/// greatest.
+/// The viewer's texels of the file: bytes unchanged, other types as 16-bit values from the smallest to the
+/// largest value of the file.
 std::vector<std::byte> texels_of(const Json& volume, const std::string& path, VolumeDescription& description) {
   const auto file = open_volume(path);
   description.size = file->description().size;
@@ -64,7 +64,7 @@ std::vector<std::byte> texels_of(const Json& volume, const std::string& path, Vo
   return scalars;
 }
 
-/// The viewer's slices as steps: an entry of its table is what a layer from one slice to the next shows.
+/// The viewer's slices as steps: a table entry is the opacity of the layer from one slice to the next.
 RenderRequest request_of(const Json& description) {
   RenderRequest request;
   const Json& matrices = description.at("matrices");

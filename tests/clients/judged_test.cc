@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every operator, opaque geometry and two volumes against the slices in double precision: the viewer alone,
-// with the ray caster in its process, and on two ranks; the composited float frames and the images of 8 bits.
-// Every channel of every pixel has its own bound, which follows from the precisions below
+// Every operator, opaque geometry and two volumes, compared with the slices in double precision: the viewer
+// alone, with the ray caster in its process, and on two ranks; the composited float frames and the 8-bit
+// images. Every channel of every pixel has its own bound, which follows from the precisions below
 // (`tests/emulation/slices.h`).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ std::vector<double> screenshot(const viewer_test::Image& image) {
 
 class Judged : public CommandTest, public testing::WithParamInterface<Scene> {
  protected:
-  /// No voxel is 0, so that a minimum has something to tell; edges and smooth places, three different sizes.
+  /// No voxel is 0, so that a minimum shows something. Has edges and smooth regions, and three different sizes.
   std::string volume() const {
     std::string voxels;
     for (int z = 0; z < 36; ++z)
@@ -81,7 +81,7 @@ class Judged : public CommandTest, public testing::WithParamInterface<Scene> {
            GetParam().options;
   }
 
-  /// Prints how `drawn` lies to `image`, and expects it within its bounds, give or take `slack`.
+  /// Prints how `drawn` compares with `image`, and expects it within the bounds plus `slack`.
   void expect_within(const std::string& what, const emulation::Image& image, const std::vector<double>& drawn,
                      int channels, double slack) const {
     const emulation::Verdict verdict = emulation::judge(image, drawn, channels, slack);
@@ -90,7 +90,7 @@ class Judged : public CommandTest, public testing::WithParamInterface<Scene> {
     EXPECT_EQ(verdict.outside, 0) << what;
   }
 
-  /// A volume's own image, had its slices lain a little elsewhere.
+  /// A volume's own image with its slices slightly displaced.
   static std::vector<double> moved(const emulation::Frame& frame, std::size_t number) {
     emulation::Volume volume = frame.volumes[number];
     const double distance = volume.offsets[1] - volume.offsets[0];

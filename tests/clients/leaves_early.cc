@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Preloaded into a viewer, ends it at the end of its third frame, before the frame is shown, with status 5: by
-// _exit(), or by exit() when LEAVE_BY=exit. Nothing is closed: no context, no window, no volume.
+// Preloaded into a viewer, ends it with status 5 at the end of its third frame, before the frame is shown: by
+// _exit(), or by exit() if LEAVE_BY=exit. Leaves context, window and volume open.
 #include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does what run --remote leaves out, and draws on: copies a context's state, and has its messages told by
-// debug callbacks. Prints what it was told. Exit status 0 when it has lived through it.
+// Uses features that run --remote does not support, and continues to draw: copies a context's state, and
+// requests messages by debug callbacks. Prints the messages. Exits with status 0 if it survives.
 #define GL_GLEXT_PROTOTYPES
 #include <GL/gl.h>
 #include <GL/glext.h>

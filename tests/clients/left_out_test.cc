@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is left out, item by item: a viewer with it and without it shows the same images, to the item's
-// tolerance, and the report tells what it saved.
+// Every optimization separately: a viewer with and without it shows the same images, within the optimization's
+// tolerance, and the report states what it saved.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -26,13 +26,13 @@ constexpr int left_out_frames = 4;
 
 struct Case {
   Optimization optimization;
-  Words viewer;             ///< what shows something that can be left out
+  Words viewer;             ///< arguments for a scene in which work can be skipped
   Words options = {};       ///< of `understudy run`
-  std::uint64_t still = 0;  ///< amount that is left out nevertheless
+  std::uint64_t still = 0;  ///< amount that is skipped even when disabled
   const char* mode = "core";
 };
 
-/// Colours that rise with the value, so that a maximum of colours is one of values.
+/// Colours increase with the value, so that a maximum of colours is one of values.
 const char* const rising = R"({"knots": [{"at": 0, "colour": [0, 0, 0], "opacity": 0},
                                          {"at": 1, "colour": [1, 1, 1], "opacity": 1}]})";
 
@@ -59,7 +59,7 @@ double largest_difference(const RgbaImage& a, const RgbaImage& b) {
 
 class LeftOut : public CommandTest, public testing::WithParamInterface<std::size_t> {
  protected:
-  /// Frames as floats and as shown, and the report, all beginning with `name`.
+  /// Saves float frames, screenshots and the report, with names that begin with `name`.
   nlohmann::json show(const Case& shown, const std::string& name, const Words& options) {
     std::filesystem::create_directories(file(name + "_shown"));
     Words viewer = shown.viewer;
@@ -126,7 +126,7 @@ class Explained : public CommandTest {};
 
 TEST_F(Explained, FrameByFrameAndInTheEnd) {
   if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
-  // For whole windows `auto` may choose another exchange, with fewer messages.
+  // For whole windows, `auto` might choose another exchange with fewer messages.
   const Outcome outcome = run_well(under({"-n", "2", "--sort", "last", "--exchange", "direct-send", "--overlap",
                                           "off", "--explain", "--report", file("report.json")}) +
                                    engine_viewer("core", {"--frames", "3", "--orbit", "5", "--no-frame"}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rank is killed in the midst of a viewer's frames: nobody who looks at the frames can tell.
+// A rank is killed while a viewer draws frames: the frames must not show any difference.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -21,7 +21,7 @@ constexpr int ranks = 3;
 
 class LostNode : public CommandTest, public testing::WithParamInterface<int> {
  protected:
-  /// The process of a rank; 0 when there is none.
+  /// Process id of a rank; 0 if there is none.
   pid_t rank(int number) const {
     for (const pid_t pid : processes("understudy-node")) {
       const std::string environment = contents(fmt::format("/proc/{}/environ", pid));
@@ -31,8 +31,8 @@ class LostNode : public CommandTest, public testing::WithParamInterface<int> {
     return 0;
   }
 
-  /// Whether rank 0 of a group has reached the launcher's socket. The viewer, which knocks there now and then,
-  /// may have been stopped with a connection of its own.
+  /// Whether rank 0 of a group has connected to the launcher's socket. The stopped viewer, which connects from
+  /// time to time, may hold connections of its own.
   bool group_is_there(pid_t viewer) const {
     std::set<std::string> of_viewer;
     std::error_code gone;
@@ -85,7 +85,8 @@ TEST_P(LostNode, TheViewerGoesOnAndAnotherGroupTakesOver) {
   ASSERT_NE(killed, 0);
   ASSERT_EQ(kill(killed, SIGKILL), 0);
 
-  // The viewer draws faster than a group starts: it is held at its seventh frame until the next group is there.
+  // The viewer draws faster than a group starts, so it is stopped at its seventh frame until the next group
+  // exists.
   ASSERT_TRUE(frame_is_out(6) && child.running()) << child.err();
   const std::vector<pid_t> viewers = processes("understudy-viewer");
   ASSERT_EQ(viewers.size(), 1U);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps a buffer of more than a gibibyte, writes a little of it at its ends and in the middle, and asks OpenGL
-// for what it has written. Exit status 1 when something else comes back.
+// Maps a buffer of more than one gibibyte, writes a little at its ends and in the middle, and reads it back
+// through OpenGL. Exits with status 1 if the data differs.
 #define GL_GLEXT_PROTOTYPES
 #include <GL/gl.h>
 #include <GL/glext.h>

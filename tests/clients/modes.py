@@ -3,38 +3,38 @@
 """./run modes [NAME…]: packaged viewers in the modes that people use, bare and under `understudy run`, as a table.
 
 The script at UNDERSTUDY_VIEWER_MODES (../shared/clients/modes/run beside the checkout, if the variable is not set) is
-asked as
+called as
 
     [WITH="command…"] run VIEWER DATA MODES IMAGE.png FRAMES
 
-It leaves a first, a middle and a last image (IMAGE.a.png, IMAGE.b.png, IMAGE.png) and prints a line "FRAME ms median X".
-Bare and substituted runs follow each other, in the other order in every second round; a ratio is of two runs beside each
-other. The interval of the ratio is that of Student's t over the logarithms. Everything is as users have it: the speed
-guard is on. Rows in which the viewer draws in the end are of five seconds of its frames, and of 60 frames at least, if one
-takes less than half a second.
+It saves a first, a middle and a last image (IMAGE.a.png, IMAGE.b.png, IMAGE.png) and prints a line "FRAME ms median X".
+Bare and substituted runs alternate, in reverse order in every second round; a ratio is that of two adjacent runs. The
+interval of the ratio is that of Student's t over the logarithms. Everything is configured as for users: the speed guard is
+on. If a volume is handed back to the viewer, the runs last for five seconds of frames and at least 60 frames, provided that a
+frame takes less than half a second.
 
-Rows of the viewer `viewer` are those of ./run viewers, whose script is asked with the name that stands in place of the
-data; of these the last image alone is compared.
+Rows of the viewer `viewer` are those of ./run viewers, whose script is called with the name that stands in place of the
+data; for these rows, only the last image is compared.
 
-With --simultaneous the two runs of a round share one processor, and "ms bare" is what frames had of it: whatever slows the
-machine for a second slows both. This is for machines with neighbours, on which times of two runs in a row
-scatter by more than the ratio is asked to tell. Viewers whose script is not Python, or whose nodes are processes of their
-own, cannot be timed that way. --simultaneous-near-one does so where the viewer draws in the end, or the first ratio is near 1.
+With --simultaneous, the two runs of a round share one processor, and "ms bare" is the processor time of frames: whatever
+slows the machine for a second slows both. This is for machines with other load, on which the times of two consecutive runs
+vary by more than the ratio should resolve. Viewers whose script is not Python, or whose nodes are processes of their own,
+cannot be timed in this way. --simultaneous-near-one does so if the volume is handed back, or if the first ratio is near 1.
 
-With --jobs N so many rows are measured at once, each on a processor of its own. With --resume, rows that table.json has
-are not measured again: all of them take hours.
+With --jobs N, N rows are measured at once, each on a processor of its own. With --resume, rows that table.json contains
+are not measured again: measuring all rows takes hours.
 
-With --watch each row runs once under Understudy, with the speed guard off, and once bare: the table says how many images
-were compared and lost, and what recognition and sentinels took of a bare frame, on average over all frames but the
-first; and how long Understudy waited for what the viewer itself had drawn before, as the viewer would have done.
+With --watch, each row runs once under Understudy with the speed guard off, and once bare. The table then shows how many images
+were compared and how many failed, and the share of a bare frame that recognition and sentinels took, on average over all
+frames but the first; and how long Understudy waited for what the viewer had drawn before, as the viewer itself would have.
 
-VTK chooses how fine an image is by the clock while somebody turns a volume (`inter`): two runs show other images in the
-middle. There every frame of one more run is compared with what the viewer draws in that same frame (--verify 1).
+During rotation (`inter`), VTK chooses the quality of an image by the clock: two runs show different images in the middle.
+In this mode, every frame of one more run is compared with what the viewer draws in the same frame (--verify 1).
 
-An image is held against the bare viewer's of the same round in tiles of 16 × 16 pixels, as docs/verification.md says:
-the worst tile's difference as a multiple of the bound.
+An image is compared with the bare viewer's of the same round in tiles of 16 × 16 pixels, as described in
+docs/verification.md: the worst tile's difference as a multiple of the bound.
 
-Images, reports and the viewers' words are kept in out/modes, and with them table.json and table.md.
+Images, reports and the viewers' output are kept in out/modes, together with table.json and table.md.
 """
 
 import argparse
@@ -55,24 +55,26 @@ import numpy
 from viewers import ROOT, UNDERSTUDY, missing, run_group, say, viewer_script
 
 OUT = ROOT / "out" / "modes"
-# In it Python's clock is that of the process.
+# Folder whose sitecustomize.py makes Python's clock that of the process.
 PROCESSOR_TIME = Path(__file__).resolve().parent / "processor_time"
 TILE = 16
-# The bounds of docs/verification.md, in 1/255: on a tile's average, and on what an eighth of its pixels reach.
+# The bounds of docs/verification.md, in 1/255: for a tile's average, and for the value that an eighth of its pixels
+# reach.
 MAX_EXCESS, MAX_COMMON = 3.0, 8.0
-# A viewer that draws in the end is looked at for so long, and for some frames, if its frames are short.
+# Length of runs of a viewer whose volume is handed back, in ms of frames, if its frames are shorter than the second
+# value.
 HANDED_BACK_MS, SHORT_FRAME_MS = 5000, 500
-# A first ratio below this is near 1, as far as two runs in a row tell.
+# A first ratio below this counts as near 1, given the precision of two consecutive runs.
 NEAR_ONE = 1.3
-# A viewer that says less than this of a frame has only asked for it to be drawn later, as mayavi does.
+# A viewer that reports less than this for a frame has only scheduled the drawing, as mayavi does.
 DRAWN_MS = 1
-# Slices that are blended into 8 bits: each blend rounds, and a hundred of them drift by some 255ths. Where it is more, every
-# frame is compared with the viewer's slices as Understudy itself does: blended in floats.
+# For slices blended in 8 bits: each blend rounds, so that a hundred slices drift by several 255ths. Above this bound,
+# every frame is compared with the viewer's slices as Understudy itself compares them: blended in floats.
 BOUND_OF_SLICES = 4.0
 SLICES = ("pyqtgraph", "pymol", "osgvolume")
-# In these modes the viewer chooses by the clock what it shows in the middle.
+# In these modes, the viewer chooses by the clock what it shows in the middle.
 BY_THE_CLOCK = ("inter",)
-# Two-sided 95 % quantiles of Student's t by degrees of freedom; with more than ten, as with ten.
+# Two-sided 95 % quantiles of Student's t by degrees of freedom; above ten, the value for ten is used.
 T_95 = (None, 12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26, 2.23)
 
 VTK = ["plain", "mip", "minip", "avg", "add", "iso", "slice", "shade", "gradop", "shade,gradop", "clip", "crop", "fence",
@@ -116,7 +118,7 @@ def command_of(row, image, frames):
 
 
 def name_of(row):
-    """The viewer, as viewers.py knows it."""
+    """The viewer's name in viewers.py."""
     return row[1] if row[0] == "viewer" else row[0]
 
 
@@ -128,7 +130,7 @@ def pixels(path):
 
 
 def beyond_neighbours(of, other):
-    """How far each pixel of one image lies outside of what the other has within one pixel of it."""
+    """How far each pixel of one image lies outside the range of the other within one pixel around it."""
     padded = numpy.pad(other, ((1, 1), (1, 1), (0, 0)), mode="edge")
     height, width = other.shape[:2]
     near = numpy.stack([padded[y:y + height, x:x + width] for y in range(3) for x in range(3)])
@@ -137,7 +139,7 @@ def beyond_neighbours(of, other):
 
 
 def severity(a, b):
-    """That of the worst tile, as docs/verification.md has it: 1 is the bound."""
+    """Severity of the worst tile, as in docs/verification.md: 1 is the bound."""
     excess = numpy.maximum(beyond_neighbours(a, b), beyond_neighbours(b, a)).astype(float)
     direct = numpy.abs(a - b).max(axis=2).astype(float)
     height, width = (max(1, side // TILE) for side in direct.shape)
@@ -151,7 +153,7 @@ def severity(a, b):
 
 
 def worst_tile(a, b):
-    """None where an image is missing; infinite where sizes differ."""
+    """None if an image is missing; infinite if sizes differ."""
     if not (a.exists() and b.exists()):
         return None
     a, b = pixels(a), pixels(b)
@@ -159,7 +161,7 @@ def worst_tile(a, b):
 
 
 class Run:
-    """One row, one way, once."""
+    """One run of a row, bare or under Understudy."""
 
     def __init__(self, row, way, frames, seconds, options="", own_clock=False):
         stem = re.sub(r"[^A-Za-z0-9.-]+", "_", ".".join([*row, way]))
@@ -182,7 +184,7 @@ class Run:
         return sum(volume["draws"][kind] for volume in self.report["volumes"]) if self.report else 0
 
     def reason(self):
-        """The commonest reason why something was left to the viewer."""
+        """The most frequent reason for which draws were left to the viewer."""
         counts = {}
         for volume in self.report["volumes"] if self.report else []:
             for reason, count in volume["left_because"].items():
@@ -203,7 +205,7 @@ def interval(ratios):
 
 
 def pair_of(row, number, frames, arguments, simultaneous):
-    """Bare and substituted runs, one after the other, which of them first changes from round to round; or at the same time."""
+    """A bare and a substituted run, in alternating order from round to round, or both at the same time."""
     ways = ("bare", "substituted")
     if simultaneous:
         with ThreadPoolExecutor() as pool:
@@ -212,8 +214,8 @@ def pair_of(row, number, frames, arguments, simultaneous):
 
 
 def frames_needed(pair, arguments):
-    """As many as were asked for. More where the viewer draws in the end, and its frames are short: what a volume that is
-    handed back costs is paid in its first frames, and of few frames these are many."""
+    """The requested number of frames; more if the volume was handed back and the viewer's frames are short: the cost of
+    handing back is incurred in the first frames, and must not dominate a run of few frames."""
     bare, run = pair["bare"], pair["substituted"]
     short = bare.frame_ms is not None and bare.frame_ms <= SHORT_FRAME_MS
     if not short or run.trouble or run.draws("left") <= run.draws("substituted"):
@@ -222,7 +224,7 @@ def frames_needed(pair, arguments):
 
 
 def worst_tile_of_own_frames(row, frames, arguments):
-    """Of all frames of a run, each against the viewer's own drawing in it; infinite where one was not compared."""
+    """Worst tile over all frames of a run, each compared with the viewer's own drawing; infinite if one was not compared."""
     run = Run(row, "verified", frames, arguments.seconds, "--verify 1 --speed-guard off")
     if run.trouble or not run.report:
         return None
@@ -232,7 +234,7 @@ def worst_tile_of_own_frames(row, frames, arguments):
 
 
 def is_near_one(pair):
-    """Whether the viewer draws in the end, or is nearly as fast by itself."""
+    """Whether the volume was handed back, or the viewer alone is almost as fast."""
     bare, run = pair["bare"], pair["substituted"]
     if not bare.frame_ms or not run.frame_ms:
         return False
@@ -277,7 +279,7 @@ def mean(values):
 
 
 def watched(row, arguments):
-    """One long run under Understudy that never steps back, and what it took of the bare viewer's frame."""
+    """One long run under Understudy that never hands back, and its costs relative to the bare viewer's frame."""
     bare = Run(row, "bare", min(arguments.frames, 24), arguments.seconds)
     run = Run(row, "watched", arguments.frames, arguments.seconds, "--speed-guard off")
     if run.trouble or bare.trouble:
@@ -332,7 +334,7 @@ def markdown(rows):
 
 
 def verdicts(rows):
-    """What a user would complain about."""
+    """Yields what a user would complain about."""
     for row in rows:
         if "trouble" in row:
             continue
@@ -352,7 +354,7 @@ def measured(row, arguments):
 
 
 class Results:
-    """The rows measured so far, on the disk as soon as there is one more."""
+    """The rows measured so far, written to disk after each row."""
 
     def __init__(self, wanted, table, resume):
         self.wanted, self.table, self.lock = wanted, table, threading.Lock()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How osgvolume is started on the engine.
+// The osgvolume command for the engine.
 #pragma once
 
 #include <map>
@@ -9,7 +9,7 @@
 
 namespace clients {
 
-/// With its fixed-function technique, on raw bytes.
+/// Fixed-function technique, raw bytes.
 inline Words osgvolume() {
   return {"osgvolume",
           "--no-shader",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A viewer that nobody here wrote: OpenSceneGraph's osgvolume with its fixed-function technique (display list,
-// texgen, clip planes, alpha test), in a window.
+// A third-party viewer: OpenSceneGraph's osgvolume with its fixed-function technique (display list, texgen,
+// clip planes, alpha test), in a window.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -30,8 +30,8 @@ class Osgvolume : public CommandTest {
     ASSERT_EQ(bare.status, 128 + SIGTERM) << bare.err;
   }
 
-  /// The viewer has no screenshot of its own: its window is grabbed when two grabs agree and show something. It
-  /// is ended by SIGTERM then, with `report` (where one is named) written before.
+  /// osgvolume cannot save screenshots: its window is grabbed until two grabs agree and show something. It is
+  /// then ended by SIGTERM, after `report` (if named) has been written.
   Outcome photograph(const Words& prefix, const std::string& name,
                      const std::map<std::string, std::string>& environment = {},
                      const std::string& report = "") {

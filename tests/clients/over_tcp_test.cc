@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Viewers whose nodes, or whose OpenGL, are behind a TCP connection: images are those of one machine, and
-// whoever has not the secret is told so and leaves nothing behind.
+// Viewers whose nodes, or whose OpenGL, are reached over TCP: images equal those of a single machine, and
+// clients without the secret are refused with a message and leave nothing behind.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ class OverTcp : public CommandTest {
       GTEST_SKIP() << lacking;
   }
 
-  /// `understudy serve` with two nodes at a port of its own.
+  /// Runs `understudy serve` with two nodes at a separate port.
   void serve(const Words& options = {}) { serve_with(Words{"--secret-file", secret()} + options); }
   void serve_with(const Words& options) {
     fs::create_directory(file("server"));
@@ -73,7 +73,7 @@ class OverTcp : public CommandTest {
     EXPECT_EQ(leftovers(), "");
   }
 
-  /// Children of the server and their children, but those of mpirun.
+  /// Children of the server and their children, except mpirun's.
   std::vector<pid_t> listener_and_its_children() const {
     std::vector<pid_t> found;
     for (const pid_t process : processes("understudy"))
@@ -114,7 +114,7 @@ TEST_F(OverTcp, NodesDrawWhatTheyDrawAtAUnixSocket) {
   EXPECT_EQ(png("unix.png").rgb, png("tcp.png").rgb);
   run_well(under(over_tcp() + Words{"--pixels", "byte"}) + frame("byte.png"));
   EXPECT_GE(told("pixels of a byte", png("unix.png"), png("byte.png")).psnr, 45);
-  // The same of a volume in a file.
+  // The same for a volume in a file.
   const Words render = {
       (programs / "understudy").string(), "render", "synthetic:40x40x40", "--size", "97x61", "--out"};
   run_well(render + Words{file("u.png").string(), "--connect", socket()});
@@ -132,7 +132,7 @@ TEST_F(OverTcp, WhoHasAnotherSecretDrawsByItselfAndSaysWhy) {
   EXPECT_THAT(wrong.err, HasSubstr("copy its --secret-file"));
   EXPECT_TRUE(comes_true([&] { return server_->err().find("was not let in") != std::string::npos; }));
   EXPECT_EQ(json("report.json").at("connection"), nullptr);
-  // A viewer that has no OpenGL is not started then, nor without a GL server.
+  // In this case, and without a GL server, a viewer without OpenGL is not started.
   const Outcome none = run(under(Words{"--remote"} + over_tcp("wrong")) + frame("none.png"));
   EXPECT_EQ(none.status, 1) << none.err;
   EXPECT_FALSE(fs::exists(file("none.png")));
@@ -165,7 +165,7 @@ TEST_F(OverTcp, KeysServeInPlaceOfASecret) {
                   file("server.key.pub").string(), "--report", file("report.json")}) +
            frame("run.png"));
   EXPECT_EQ(substituted(json("report.json")), 1);
-  // No secret was made.
+  // No secret was generated.
   EXPECT_FALSE(fs::exists(secret()));
   end_server();
 }
@@ -193,7 +193,7 @@ TEST_F(OverTcp, AThousandConnectionsLeaveNothingAtTheServer) {
   EXPECT_EQ(png("before.png").rgb, png("after.png").rgb);
   EXPECT_TRUE(comes_true([&] { return quiet() && descriptors() <= before; }))
       << descriptors() << " of " << before;
-  // Other programs of the machine come and go there.
+  // Other programs on the machine may create and remove segments as well.
   EXPECT_TRUE(comes_true([&] { return shared_memory() <= memory_before; }));
   end_server();
 }
@@ -222,7 +222,7 @@ TEST_F(OverTcp, ALineThatStandsStillForThreeSecondsIsWaitedFor) {
     Child child(command_of(under(remote + at(line.address().text()) + Words{"--report", file("report.json")}) +
                            turning("held.png", frames)),
                 file("held"));
-    // In the middle of an image, most likely.
+    // Probably in the middle of an image.
     EXPECT_TRUE(comes_true([&] { return line.bytes_down() > 600'000 || !child.running(); }));
     ASSERT_TRUE(child.running()) << line.bytes_down() << " bytes came\n" << child.err();
     line.stand_still();
@@ -267,7 +267,7 @@ TEST_F(OverTcp, AfterACutViewersDrawByThemselvesOrSayThatNobodyDraws) {
     }
     EXPECT_TRUE(comes_true(quiet)) << server_->err();
   }
-  // Those who come next notice nothing.
+  // Later clients are not affected.
   run_well(under(Words{"--remote"} + over_tcp()) + frame("after.png"));
   EXPECT_EQ(png("after.png").width, 256);
   end_server();

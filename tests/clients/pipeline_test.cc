@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images one frame late while the camera moves, and the right one once it rests.
+// While the camera moves, images are one frame late; when it rests, the correct image follows.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -27,7 +27,7 @@ bool has(const std::string& text, std::string_view part) {
 }  // namespace
 
 std::vector<RecordedFrame> frames_in(const std::string& dump) {
-  // "1234 glName(name = value, …) = result"; some calls go on over several lines.
+  // "1234 glName(name = value, ...) = result"; some calls span several lines.
   static const std::regex start("^[0-9]+ ([A-Za-z0-9]+)\\((.*)$");
   std::vector<RecordedFrame> frames;
   RecordedFrame frame;
@@ -35,7 +35,7 @@ std::vector<RecordedFrame> frames_in(const std::string& dump) {
   std::istringstream stream(dump);
   for (std::string line; std::getline(stream, line);) {
     std::smatch match;
-    // What a regular expression does on long lines (texels, buffers) costs a stack that nobody has.
+    // Regular expressions need too much stack for long lines (texels, buffers).
     const std::string head = line.substr(0, 400);
     if (!std::regex_match(head, match, start)) continue;
     const std::string call = match[1], arguments = match[2];

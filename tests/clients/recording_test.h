@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A GL server on which apitrace records a viewer's calls: bare, and at the driver's side of Understudy.
+// A fixture that records a viewer's calls with apitrace: bare, and on the driver's side of Understudy.
 //
-// apitrace is made to be the first library that a program calls; here it has to be the second. Three settings
-// bring that about. LD_PRELOAD names Understudy before apitrace's library and the real OpenGL after it, which
-// is where apitrace looks for the driver (RTLD_NEXT). Between them stands the C library, so that Understudy
-// finds its dlopen() before apitrace's, which changes what is opened. UNDERSTUDY_DRIVER_DIR is a folder in
-// which the driver's names lead to apitrace's library.
+// apitrace is designed to be the first library that a program calls, but here it must be the second. Three
+// settings achieve this. LD_PRELOAD names Understudy before apitrace's library, and the real OpenGL after it,
+// where apitrace looks for the driver (RTLD_NEXT). Between Understudy and apitrace stands the C library, so
+// that Understudy finds its dlopen() before apitrace's, which redirects what is opened. UNDERSTUDY_DRIVER_DIR
+// is a folder in which the driver's library names link to apitrace's library.
 #pragma once
 
 #include <map>
@@ -15,9 +15,9 @@
 
 namespace clients {
 
-/// A window system's library, and apitrace's in its place.
+/// A window system's library, and the apitrace library that replaces it.
 struct RecordedLibrary {
-  const char* api;  ///< as `apitrace trace -a` has it
+  const char* api;  ///< as in `apitrace trace -a`
   const char* wrapper;
   const char* name;
 };
@@ -29,11 +29,11 @@ class RecordingTest : public CommandTest {
  protected:
   using Environment = std::map<std::string, std::string>;
 
-  /// What `apitrace dump` says of the viewer alone.
+  /// Output of `apitrace dump` for the viewer alone.
   std::string dump_of_bare(const RecordedLibrary& library, const Words& viewer,
                            const Environment& environment) const;
 
-  /// What it says of the calls that reach the driver under `understudy run OPTIONS`, whose report is left in
+  /// Output for the calls that reach the driver under `understudy run OPTIONS`, which writes its report to
   /// report.json.
   std::string dump_of_driver(const RecordedLibrary& library, const Words& options, const Words& viewer,
                              const Environment& environment) const;

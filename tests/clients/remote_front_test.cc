@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Viewers whose OpenGL is elsewhere and that show what they draw without a swap, write with the X server's
-// fonts, or call what is left out.
+// Viewers with remote OpenGL that show what they draw without a swap, write text with the X server's fonts, or
+// call unsupported functions.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -20,7 +20,7 @@ namespace {
 using Colour = std::array<int, 3>;
 constexpr Colour green{0, 255, 0};
 constexpr Colour blue{0, 0, 255};
-/// As wide and high as the programs' windows, which lie in the upper left corner.
+/// Width and height of the programs' windows, which lie in the upper left corner.
 constexpr int window_size = 128;
 
 class RemoteFront : public RemoteViewer {
@@ -34,7 +34,7 @@ class RemoteFront : public RemoteViewer {
     return {image.rgb[first], image.rgb[first + 1], image.rgb[first + 2]};
   }
 
-  /// Whether all of the window is `left` in its left half and `right` in its right one.
+  /// Whether the window's left half is `left` everywhere, and its right half `right`.
   static bool has_halves(const viewer_test::Image& image, Colour left, Colour right) {
     for (int y = 0; y < window_size; ++y)
       for (int x = 0; x < window_size; ++x)
@@ -42,7 +42,7 @@ class RemoteFront : public RemoteViewer {
     return true;
   }
 
-  /// What is on the screen some time after the program has drawn all; the program has ended then.
+  /// What the screen shows some time after the program has drawn everything; then ends the program.
   viewer_test::Image rests_at(const Words& command, const std::function<bool(const viewer_test::Image&)>& as) {
     Child child(command_of(command, on_display()), file(""));
     EXPECT_TRUE(comes_true([&] { return !child.running() || child.out().find("drawn") != std::string::npos; }));
@@ -52,7 +52,7 @@ class RemoteFront : public RemoteViewer {
       return !child.running() || (!last.rgb.empty() && as(last));
     })) << child.err();
     EXPECT_TRUE(child.running()) << child.out() << child.err();
-    // Nothing else may come afterwards.
+    // Nothing else may be shown afterwards.
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     last = screen().value_or(last);
     child.signal(SIGTERM);
@@ -66,7 +66,7 @@ class RemoteFront : public RemoteViewer {
   }
   double frames() const { return json("report.json").at("server_connection").at("frames").get<double>(); }
 
-  /// The same glyphs as where GLX is a driver's.
+  /// Expects the same glyphs as with a driver's GLX.
   void expect_same_text(const std::string& font, const std::string& first, const std::string& count) {
     const Words writes = {WRITES_TEXT, font, first, count};
     const auto has_text = [](const viewer_test::Image& image) {
@@ -117,14 +117,14 @@ TEST_F(RemoteFront, HalfAFrameIsNotShownByFlush) {
 }
 
 TEST_F(RemoteFront, TextIsThatOfTheXServersFonts) {
-  // Characters that are there, some that are not, and glyphs that reach over their origin.
+  // Existing characters, missing ones, and glyphs that extend beyond their origin.
   expect_same_text("fixed", "33", "80");
   expect_same_text("6x13", "210", "46");
   expect_same_text("cursor", "0", "40");
 }
 
 TEST_F(RemoteFront, ASpaceMovesOn) {
-  // Unlike that of Mesa's own glXUseXFont, to which a glyph without pixels is an error.
+  // Differs from Mesa's own glXUseXFont, for which a glyph without pixels is an error.
   Child child(command_of(remotely() + Words{WRITES_TEXT, "fixed", "32", "1"}, on_display()), file(""));
   EXPECT_TRUE(comes_true([&] { return !child.running() || child.out().find("drawn") != std::string::npos; }));
   EXPECT_NE(child.out().find("moves by 6.00"), std::string::npos) << child.out() << child.err();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stages without EGL: they draw on OSMesa, and the viewer gets the images that it gets of EGL.
+// GL servers without EGL: they draw on OSMesa, and the viewer gets the same images as with EGL.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ class RemoteOsmesa : public RemoteViewer {
  protected:
   void SetUp() override { start_display({Need::engine, Need::x_server}); }
 
-  /// Two frames of a viewer without OpenGL, and the report beside them.
+  /// Runs two frames of a viewer without OpenGL, and writes a report.
   Outcome run_remote(const std::string& folder, const std::string& mode, const Words& options,
                      std::map<std::string, std::string> environment = {}) const {
     environment["DISPLAY"] = display_->name();
@@ -59,7 +59,7 @@ TEST_F(RemoteOsmesa, CoreContextsAndNodes) {
   expect_same_images("core", {"-n", "2"});
 }
 
-/// libOSMesa is the system's, and Mesa's libraries for EGL are not there besides.
+/// The system's libOSMesa is loaded, and no library of Mesa's EGL in addition.
 TEST_F(RemoteOsmesa, TheGlServerOpensTheSystemsLibraryAlone) {
   Child child(command_of(under({"--remote", "--server-opengl", "osmesa"}) +
                              viewer("table", {"--frames", "100000", "--orbit", "1"}),
@@ -86,7 +86,7 @@ TEST_F(RemoteOsmesa, TheGlServerOpensTheSystemsLibraryAlone) {
 
 TEST_F(RemoteOsmesa, TakesThePlaceOfEglAndSaysWhy) {
   run_remote("egl", "table", {"--server-opengl", "egl"});
-  // Neither a vendor's library nor a driver.
+  // Without a vendor's library, and without a driver.
   const Outcome no_vendor =
       run_remote("no_vendor", "table", {}, {{"__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere"}});
   EXPECT_THAT(no_vendor.err,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Viewers without OpenGL: their calls are made by a GL server, and what is gathered is the image of a viewer
-// that runs where OpenGL is.
+// Viewers without OpenGL: a GL server executes their calls, and the images equal those of a viewer on a machine
+// with OpenGL.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -95,7 +95,7 @@ TEST_F(Remote, CoreContextsAndNodes) {
 TEST_F(Remote, PolygonsInTilesAreThoseOfOneProcess) {
   if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
   const auto frames = [&](const std::string& tiles) {
-    // A solid that reaches into the volume: its depth is read from all tiles.
+    // A solid that extends into the volume: its depth is read from all tiles.
     const Outcome outcome = run_well(
         under({"-n", "2", "--remote", "--tiles", tiles, "--report", file("report.json")}) + without_opengl() +
             viewer("table", {"--frames", "3", "--orbit", "50", "--opaque", "--screenshot-frames",
@@ -124,7 +124,7 @@ TEST_F(Remote, PerfShowsWhichCallsWaitForTheGlServer) {
   const nlohmann::json perf = json("calls.json");
   const auto all = perf.at("all").at("round_trips").get<std::uint64_t>();
   EXPECT_GT(all, 0U);
-  // Contexts, swaps and their ends wait as well.
+  // Contexts, swaps and their ends wait for replies as well.
   EXPECT_LE(all, json("report.json").at("server_connection").at("round_trips").get<std::uint64_t>());
   EXPECT_GT(perf.at("calls").at("glGetString").at("round_trips"), 0);
   EXPECT_EQ(perf.at("calls").at("glClear").at("round_trips"), 0);
@@ -178,7 +178,7 @@ TEST_F(Remote, ImagesAreInTheWindowOfAServerWithoutSharedMemory) {
   expect_images_in_the_window(false);
 }
 
-/// What the kernel says of a process: "Seccomp_filters", and so on.
+/// A field of /proc/PID/status, such as "Seccomp_filters".
 std::string status_of(pid_t process, const std::string& name) {
   const std::string text = contents(fmt::format("/proc/{}/status", process));
   const std::size_t at = text.find("\n" + name + ":\t");
@@ -194,7 +194,7 @@ TEST_F(Remote, ItsCallsAreMadeInASandboxUnlessThatIsSwitchedOff) {
                                viewer("table", {"--frames", "100000", "--orbit", "1"}),
                            {{"DISPLAY", display_->name()}, {"A_SECRET", "of the server's user"}}),
                 file(""));
-    // It draws: whatever closes is closed.
+    // It draws, so the sandbox is closed.
     pid_t drawing = 0;
     ASSERT_TRUE(comes_true([&] {
       for (const pid_t process : processes("understudy")) {
@@ -222,7 +222,7 @@ TEST_F(Remote, FramesAreSavedFromTheSandbox) {
   const Outcome outcome = run_well(under({"--remote", "--save-frames", file("frames")}) + without_opengl() +
                                        viewer("table", {"--frames", "2"}),
                                    on_display());
-  // Without Landlock nothing would bound files to that folder.
+  // Without Landlock, files would not be restricted to that folder.
   const bool has_none = outcome.err.find("files cannot be written") != std::string::npos;
   EXPECT_NE(std::filesystem::exists(file("frames") / "frame_0001.pfm"), has_none) << outcome.err;
 }
@@ -231,7 +231,7 @@ TEST_F(Remote, AStageThatIsKilledIsSaidOnce) {
   Child child(
       command_of(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}), on_display()),
       file(""));
-  // The GL server that listens, and its process for the viewer.
+  // The listening GL server, and its process for the viewer.
   const auto servers = [&] {
     std::vector<pid_t> found;
     for (const pid_t process : processes("understudy")) {
@@ -239,7 +239,7 @@ TEST_F(Remote, AStageThatIsKilledIsSaidOnce) {
     }
     return found;
   };
-  // Not before the viewer draws: a GL server that is gone then means that there is no OpenGL.
+  // Waits until the viewer draws: if a GL server is lost before, the viewer starts without OpenGL.
   ASSERT_TRUE(comes_true([&] {
     const auto now = screen();
     return !child.running() || (now && shows_something(*now) && servers().size() == 2);

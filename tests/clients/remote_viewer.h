@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Viewers on an X server of the test's own, which need no OpenGL of theirs.
+// Viewers on the test's own X server, without OpenGL of their own.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace clients {
 
 class RemoteViewer : public CommandTest {
  protected:
-  /// The test is skipped, or has failed, where there is no display afterwards.
+  /// If no display is started, the test is skipped or has failed afterwards.
   void start_display(std::initializer_list<Need> needs) {
     if (const std::string lacking = missing(needs); !lacking.empty()) GTEST_SKIP() << lacking;
     auto started = viewer_test::VirtualDisplay::start();
@@ -41,10 +41,10 @@ class RemoteViewer : public CommandTest {
            options;
   }
   std::map<std::string, std::string> on_display() const { return {{"DISPLAY", display_->name()}}; }
-  /// A driver that is not there: whoever loads one here fails.
+  /// Without a driver: loading one fails here.
   static Words without_opengl() { return {"env", "LIBGL_DRIVERS_PATH=/nowhere"}; }
 
-  /// What the X server shows; nothing while it cannot be grabbed.
+  /// What the X server shows; nullopt if it cannot be grabbed.
   std::optional<viewer_test::Image> screen() const {
     const Words grab = {"import", "-window", "root", "png24:" + file("screen.png").string()};
     if (Child({grab, on_display()}, file("")).finish().status != 0) return std::nullopt;

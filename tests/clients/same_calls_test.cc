@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// With nothing recognised, a viewer's calls reach the driver as they are: the same calls in the same order,
-// with the same arguments, and none in between. Recorded by apitrace without Understudy, and below its chain of
-// the track unit alone.
+// If nothing is recognised, a viewer's calls reach the driver unchanged: the same calls in the same order, with
+// the same arguments, and no others. Recorded by apitrace without Understudy, and below a chain that consists
+// of the track unit.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ TEST_P(SameCallsOfTheBundledViewer, ReachTheDriver) {
     GTEST_SKIP() << lacking;
   const auto display = viewer_test::VirtualDisplay::start();
   ASSERT_TRUE(display) << "Xvfb does not start";
-  // In a window: off screen the viewer finds its functions where apitrace's library for EGL does not see it.
+  // In a window: off screen, the viewer looks up functions in a way that bypasses apitrace's EGL library.
   Words viewer = engine_viewer(GetParam(), {"--frames", "3", "--orbit", "5"});
   std::erase(viewer, "--offscreen");
   expect_same(glx, viewer, {{"DISPLAY", display->name()}});

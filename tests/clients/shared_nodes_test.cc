@@ -20,7 +20,7 @@ class SharedNodes : public CommandTest {
       GTEST_SKIP() << lacking;
   }
 
-  /// Of `--screenshot-frames`, which a later frame has followed: it is written to the end.
+  /// A screenshot that is complete, because a later frame has followed.
   fs::path frame(const std::string& folder, int number) const {
     return file(folder) / fmt::format("frame_{:04}.png", number);
   }
@@ -44,7 +44,7 @@ TEST_F(SharedNodes, ServeTwoViewersAtTheSameTime) {
       comes_true([&] { return !nodes.running() || nodes.out().find("2 nodes at") != std::string::npos; }));
   ASSERT_TRUE(nodes.running()) << nodes.err();
 
-  // The first draws from before the second comes until after it has gone.
+  // The first viewer draws from before the second one starts until after it has ended.
   fs::create_directory(file("first"));
   Child first(command_of(under({"--connect", socket, "--report", file("first.json")}) + first_viewer +
                          Words{"--frames", "100000", "--screenshot-frames", file("first")}),

@@ -1,10 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Real viewers, recorded and played: native replays show what pack and unpack show, bit for bit, and what the viewer
-# itself showed; and where a live run on two ranks substitutes, a replay on two ranks does.
+# Records and plays real viewers. Native replays must equal replays through pack and unpack bit for bit, and show what
+# the viewer itself showed; if a live run on two ranks substitutes, a replay on two ranks must substitute as well.
 #   traces.sh BUILD/bin VIEWER_SCRIPT [NAME...]      NAME: osgvolume pyqtgraph pymol vtk
-# VIEWER_SCRIPT NAME OUT.png FRAMES runs a viewer with the command in $WITH before it and saves what it shows.
-# Exit status 77: nothing could be tried here.
+# VIEWER_SCRIPT NAME OUT.png FRAMES runs a viewer with the command in $WITH before it, and saves what the viewer shows.
+# Exit status 77: no viewer is installed.
 set -u
 programs=$(realpath "$1") viewer=$(realpath -m "$2") tried=0 failed=0
 [ -x "$viewer" ] || { echo "traces.sh: no script at $viewer that runs viewers"; exit 77; }
@@ -17,19 +17,19 @@ understudy=$programs/understudy
 
 declare -A needs=([osgvolume]='command -v osgvolume' [pyqtgraph]='/usr/bin/python3 -c "import pyqtgraph, OpenGL"'
   [pymol]='command -v pymol' [vtk]='/usr/bin/python3 -c "import vtk"')
-# Which of the saved images is the viewer's screenshot: the frame in its window, or what it read back itself.
+# Which of the saved images is the viewer's screenshot: the frame in its window, or the pixels that it read back.
 declare -A shot=([osgvolume]=frame [pyqtgraph]=frame [pymol]=read [vtk]=read)
 
 fail() { echo "traces.sh: $*" >&2; failed=1; }
 
-# Whether slices of a volume were substituted; frames may end in another context than the one that drew them.
+# Whether slices of a volume were substituted. Frames may end in a different context than the one that drew them.
 substitutes() {
   python3 -c 'import json, sys
 volumes = json.load(open(sys.argv[1]))["volumes"]
 print("yes" if any(volume["draws"]["substituted"] > 0 for volume in volumes) else "no")' "$1"
 }
 
-# psnr A B: the PSNR in dB of the lower left part that both have; osgvolume's viewport is larger than its window.
+# psnr A B: the PSNR in dB of the lower left part common to both; osgvolume's viewport is larger than its window.
 psnr() {
   local size
   size=$(identify -format '%wx%h' "$2")

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A viewer that draws only when there is something new: turns a volume for some frames, then rests, and draws
-// again when its window is exposed. Writes what its window shows just after the last turn to FILE.turning, and
-// what it shows at last to FILE: rows of RGB bytes, top down.
+// A viewer that redraws only if something has changed: rotates a volume for some frames, then rests, and
+// redraws when its window is exposed. Writes what its window shows just after the last rotation to
+// FILE.turning, and what it shows in the end to FILE: rows of RGB bytes, top row first.
 //
 //   turns_and_rests FILE FRAMES
 #include <GL/gl.h>
@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int edge = 256;
 constexpr int texels = 32;
 
-/// Two balls of different colours: no two views are alike.
+/// Two balls of different colours, so that no two views are equal.
 std::vector<unsigned char> balls() {
   std::vector<unsigned char> rgba;
   const auto ball = [](double x, double y, double z, double cx) {
@@ -78,7 +78,7 @@ void write_window(Display* display, Window window, const std::string& file) {
   XDestroyImage(image);
 }
 
-/// Whether the window has been exposed since this was last asked.
+/// Whether the window has been exposed since the last query.
 bool is_exposed(Display* display) {
   bool exposed = false;
   while (XPending(display) > 0) {
@@ -127,7 +127,7 @@ int main(int argc, char** argv) {
   write_window(display, window, std::string(argv[1]) + ".turning");
   is_exposed(display);
 
-  // Nothing moves any more.
+  // From now on nothing moves.
   int redrawn = 0;
   for (auto until = Clock::now() + std::chrono::seconds(3); Clock::now() < until;) {
     if (is_exposed(display)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Viewers that end without closing what they opened: their status is passed on, and no node, socket or folder
-// stays.
+// Viewers that end without closing what they opened: their exit status is passed on, and no node, socket or
+// folder remains.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -62,7 +62,7 @@ TEST_F(UnusualEnd, ALauncherThatIsKilledTakesNodesAndViewerWithItAndTheNextOneCl
   child.signal(SIGKILL);
   child.finish();
   EXPECT_TRUE(comes_true([&] { return processes().empty(); })) << leftovers();
-  // A run's folder is left alone while it is young: its owner may be about to lock it.
+  // A young folder of a run is not removed, because its owner may be about to lock it.
   EXPECT_TRUE(comes_true([&] {
     run(under({}) + Words{"true"});
     return std::filesystem::is_empty(runtime_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bundled viewer's ways of drawing: substituted where the nodes can render the volume, and otherwise the
-// viewer's own image, bit for bit, with the reason.
+// The bundled viewer's modes: substituted if the nodes can render the volume, otherwise the viewer's own image,
+// bit for bit, with the reason.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -25,8 +25,8 @@ struct Way {
   const char* name;
   const char* mode;
   Words options;
-  int runs;  ///< of slices in a frame that are substituted; of bricks in the first, which is one later
-  const char* reason;  ///< why it is left; null: it is not
+  int runs;  ///< substituted runs of slices per frame; for bricks, those of the first frame (one run later)
+  const char* reason;  ///< why it is refused; null: it is substituted
 };
 
 Words view(const Words& options) {
@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 class TimeSteps : public CommandTest, public testing::WithParamInterface<const char*> {};
 
-// The whole volume once; then, of a box in its middle, the tiles of 16^3 texels that it meets.
+// The whole volume once; afterwards the blocks of 16^3 texels that a box in its middle touches.
 TEST_P(TimeSteps, SendOnlyWhatChanges) {
   if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
   constexpr std::uint64_t whole = 256 * 256 * 110, tiles = 64 * 64 * 48;
@@ -117,7 +117,7 @@ TEST_P(TimeSteps, SendOnlyWhatChanges) {
     fmt::print("{} on {} ranks: {} bytes sent\n", GetParam(), ranks, sent);
     EXPECT_EQ(sent + texels.at("bytes_left_out").get<std::uint64_t>(), 3 * whole);
     EXPECT_GT(sent, whole);
-    // Air stays air.
+    // Blocks of air do not change.
     EXPECT_LT(sent, std::string(GetParam()) == "whole" ? 3 * whole : whole + 2 * tiles + 1);
   }
   for (int number = 0; number < 3; ++number) {
@@ -141,7 +141,7 @@ TEST_P(OperatorsOnRanks, GiveTheImageOfOneProcess) {
   if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
   const std::string name = GetParam();
   const Words way = name == "segments" ? Words{"--mode", "preint"} : Words{"--operator", name};
-  // No voxel is 0: a minimum has something to tell.
+  // No voxel is 0, so that a minimum shows something.
   std::string voxels;
   constexpr int edge = 50;
   for (int z = 0; z < edge; ++z)
@@ -169,7 +169,7 @@ TEST_P(OperatorsOnRanks, GiveTheImageOfOneProcess) {
     const RgbaImage one = read_image(file("frames0") / frame), two = read_image(file("frames2") / frame);
     ASSERT_EQ(one.rgba.size(), two.rgba.size());
     for (std::size_t i = 0; i < one.rgba.size(); ++i) {
-      // Where a minimum has no sample it is larger than any float framebuffer's colour.
+      // Without a sample, a minimum is larger than any colour of a float framebuffer.
       const double a = std::min(one.rgba[i], 1e3F), b = std::min(two.rgba[i], 1e3F);
       largest = std::max(largest, std::abs(a - b));
       if (a < 1e3) brightest = std::max(brightest, a);

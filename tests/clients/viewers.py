@@ -2,17 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """./run viewers [NAME…] [--install]: real viewers, bare and under Understudy, as a table.
 
-Every viewer that the script at UNDERSTUDY_VIEWERS (../shared/clients/viewer beside the checkout, if the variable is not
-set) knows is run five ways, which follow each other in every round: bare, under `understudy run` (embedded), under
-`understudy run -n 2`, with nothing but LD_PRELOAD=libunderstudy.so, and under `understudy run --remote -n 2` without any
-OpenGL of its own (GL server), whose image is held against that of `run -n 2`. The script is asked as
+Runs every viewer that is known to the script at UNDERSTUDY_VIEWERS (../shared/clients/viewer beside the checkout, if the
+variable is not set) in five ways, one after the other in every round: bare, under `understudy run` (embedded), under
+`understudy run -n 2`, with only LD_PRELOAD=libunderstudy.so, and under `understudy run --remote -n 2` without OpenGL of its
+own (GL server), whose image is compared with that of `run -n 2`. The script is called as
 
     [WITH="command…"] viewer NAME IMAGE.png FRAMES
 
-and prints a line "FRAME ms median X" where the viewer measures itself. Elsewhere frame times are Understudy's own; for the
-bare viewer those of a run whose volume is handed back to it after the first frame, because no image is good enough.
+and prints a line "FRAME ms median X" if the viewer measures itself. Otherwise frame times are Understudy's own; for the bare
+viewer, they come from a run whose volume is handed back after the first frame, because the required PSNR is unreachable.
 
-Images, reports and the viewers' words are kept in out/viewers, and with them table.json and table.md.
+Images, reports and the viewers' output are kept in out/viewers, together with table.json and table.md.
 """
 
 import argparse
@@ -33,8 +33,8 @@ UNDERSTUDY = ROOT / "build" / "bin" / "understudy"
 LIBRARY = ROOT / "build" / "lib" / "libunderstudy.so"
 WAYS = ("bare", "embedded", "2 ranks", "preload", "gl-server")
 
-# What a viewer needs, by the beginning of its name: what is there when it is installed, and the Debian packages that
-# bring it. Some of them exclude others.
+# Requirements of a viewer, by the beginning of its name: programs and modules that exist when it is installed, and the
+# Debian packages that provide them. Some of the packages conflict with each other.
 NEEDS = {
     "osgvolume": (["osgvolume"], [], ["openscenegraph"]),
     "pyqtgraph": ([], ["pyqtgraph", "OpenGL", "PyQt5.QtOpenGL"],
@@ -76,7 +76,7 @@ def needs(name):
 
 
 def missing(name):
-    """What of a viewer is not installed, in words; empty when it can run."""
+    """Message that names what a viewer lacks; empty if it can run."""
     programs, modules, packages = needs(name)
     absent = [program for program in programs if shutil.which(program) is None]
     for module in modules:
@@ -93,7 +93,7 @@ def installed(packages):
 
 
 def install(packages):
-    """Whatever excludes them is removed by apt. Answers what went wrong, in words."""
+    """Installs packages; apt removes packages that conflict with them. Returns an error message, or ""."""
     command = ["env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "-y", "-q", "--no-install-recommends", "install",
                *packages]
     if os.geteuid() != 0:
@@ -106,7 +106,7 @@ def install(packages):
 
 
 def run_group(command, environment, log, seconds):
-    """Runs `command` in a group of its own; whatever of it is left after `seconds` is ended. None: time was up."""
+    """Runs `command` in a separate process group, and ends what is left of it after `seconds`. None: the time was up."""
     with log.open("wb") as text:
         child = subprocess.Popen(command, env=environment, stdout=text, stderr=subprocess.STDOUT, start_new_session=True)
         try:
@@ -126,7 +126,7 @@ def run_group(command, environment, log, seconds):
 
 
 class Run:
-    """One viewer, one way, once."""
+    """One run of a viewer in one way."""
 
     def __init__(self, script, name, way, frames, seconds, watched=False):
         stem = f"{name}.{way.replace(' ', '_')}{'.watched' if watched else ''}"
@@ -141,14 +141,14 @@ class Run:
             "bare": f"{UNDERSTUDY} run --report {report} --" if watched else "",
             "embedded": f"{UNDERSTUDY} run --report {report} --",
             "2 ranks": f"{UNDERSTUDY} run -n 2 --report {report} --",
-            # Nobody writes a report here; an image is saved for every run of slices that is substituted.
+            # There is no report in this case; an image is saved for every run of slices that is substituted.
             "preload": f"env LD_PRELOAD={LIBRARY} UNDERSTUDY_SAVE_FRAMES={saved}",
             "gl-server": f"{UNDERSTUDY} run --remote -n 2 --report {report} -- env LIBGL_DRIVERS_PATH=/nowhere",
         }[way]
         if watched:
             environment["UNDERSTUDY_VERIFY_PSNR"] = "200"
-        # Some viewers draw one view again and again: times are of images that are cast. With LD_PRELOAD alone all is
-        # as users have it.
+        # Some viewers draw the same view repeatedly; times must be those of images that are actually rendered. With
+        # LD_PRELOAD alone, everything is configured as for users.
         if way != "preload":
             environment["UNDERSTUDY_DISABLE_OPTIMIZATION"] = "unchanged-images"
         if way == "preload":
@@ -178,7 +178,7 @@ class Run:
         return any(volume["draws"]["substituted"] for volume in self.report["volumes"])
 
     def reason(self):
-        """Why something was left to the viewer: the commonest reason."""
+        """The most frequent reason for which draws were left to the viewer."""
         if self.report is None:
             return ""
         counts = {}
@@ -190,15 +190,15 @@ class Run:
         return "" if self.report["volumes"] else "no draw with a 3-D texture and blending was seen"
 
     def recognition_ms(self):
-        """What finding out what was drawn takes of a substituted frame, once a volume is known."""
+        """Time per substituted frame for recognising what was drawn, once a volume is known."""
         return self.report["time_ms"]["recognition_median"] if self.report else None
 
     def depth_ms(self):
-        """What reading the depth of the geometry drawn before the volume takes of a substituted frame."""
+        """Time per substituted frame for reading the depth of geometry drawn before the volume."""
         return self.report["time_ms"]["depth_median"] if self.report else None
 
     def line(self):
-        """What a frame takes of the line to the GL server."""
+        """Use of the connection to the GL server per frame."""
         return self.report.get("server_connection") if self.report else None
 
     def calls_a_frame(self):
@@ -208,7 +208,7 @@ class Run:
 
 
 def compared(a, b):
-    """PSNR in dB and largest difference of two images; infinite and 0 where they are equal."""
+    """PSNR in dB and largest difference of two images; infinite and 0 if they are equal."""
     done = subprocess.run([UNDERSTUDY, "compare", a, b], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           check=False)
     figures = dict(re.findall(r"^(max|PSNR) ([0-9.e+-]+|inf)", done.stdout, re.MULTILINE))
@@ -223,7 +223,7 @@ def median(values):
 
 
 def row_of(script, name, arguments):
-    """All that the table says of one viewer."""
+    """The table row of one viewer."""
     row = {"viewer": name, "ways": {}, "frame_ratio": {}, "calls_a_frame": None, "recognition_ms": None,
            "depth_ms": None, "reason": ""}
     runs = {way: [] for way in WAYS}
@@ -281,7 +281,7 @@ def cell_of_way(way):
 
 
 def share_cell(share, bare):
-    """In milliseconds, and as a part of the frame that the viewer would draw by itself."""
+    """In milliseconds, and as a share of the frame that the viewer would draw itself."""
     if share is None:
         return "–"
     return f"{share:.1f} ms" + (f" ({100 * share / bare:.1f} %)" if bare else "")
@@ -304,7 +304,7 @@ def markdown(rows):
 
 
 def gl_server_lines(rows):
-    """The same viewers without OpenGL: all of it, and two nodes, are on a GL server."""
+    """The same viewers without OpenGL: OpenGL and two nodes run on a GL server."""
     lines = ["| viewer without OpenGL | volume | PSNR to 2 ranks | ms | bytes up a frame, with all that is uploaded | down | round trips |",
              "|---|---|---|---|---|---|---|"]
     for row in rows:
@@ -324,7 +324,7 @@ def gl_server_lines(rows):
 
 
 def jsonable(value):
-    """JSON knows no infinity: equal images have a PSNR of null."""
+    """JSON has no infinity: the PSNR of equal images becomes null."""
     if isinstance(value, dict):
         return {key: jsonable(item) for key, item in value.items()}
     return None if value == float("inf") else value

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes with the glyphs of an X server's font, as display lists, and with some that the font lacks; says how
-// far the first one moves the raster position, then "drawn", and rests.
+// Writes text with glyphs of an X server's font, as display lists, including glyphs that the font lacks. Prints
+// how far the first one moves the raster position, then "drawn", and waits.
 //
 //   writes_text FONT FIRST COUNT
 #include <GL/gl.h>
@@ -13,18 +13,18 @@
 
 namespace {
 
-/// Rows of the font's characters, each behind the one before.
+/// Rows of the font's characters, one after the other.
 void write_all(int count) {
   constexpr int columns = 12;
   for (int i = 0; i < count; ++i) {
-    // A quarter of a pixel off: no rounding can tell one driver from another.
+    // Offset by a quarter of a pixel, so that rounding gives the same result with any driver.
     const int row = i / columns;
     if (i % columns == 0) glRasterPos2f(4.25F, float(client::window_size - 18 * (row + 1)) + 0.25F);
     glCallList(GLuint(1 + i));
   }
 }
 
-/// What glXUseXFont must leave as it is.
+/// Whether the pixel store has these values; glXUseXFont must not change it.
 bool pixel_store_is(GLint alignment, GLint row_length) {
   GLint now_alignment = 0;
   GLint now_row_length = 0;

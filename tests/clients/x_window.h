@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A window with an OpenGL context, by GLX, for programs that tests run.
+// A window with an OpenGL context (GLX), for programs that tests run.
 #pragma once
 
 #include <GL/glx.h>
@@ -11,7 +11,7 @@
 
 namespace client {
 
-constexpr int window_size = 128;  ///< both ways
+constexpr int window_size = 128;  ///< width and height
 
 enum class Buffers { one, two };
 
@@ -42,7 +42,7 @@ class XWindow {
   void swap() const { glXSwapBuffers(display_, window_); }
   void release() const { glXMakeCurrent(display_, None, nullptr); }
 
-  /// Until somebody ends the program.
+  /// Waits until the program is ended from outside.
   [[noreturn]] static void rest() {
     puts("drawn");
     fflush(stdout);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A number that ought to be, and the interval in which that of an honest renderer may lie: the errors that its
-// arithmetic is allowed are carried through every operation, so that the last interval is the bound of a test.
+// A value in exact arithmetic, and the interval in which a correct renderer's value may lie. Every operation
+// propagates the errors that the renderer's arithmetic is allowed; a test's bound is the final interval.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ inline Bounded within(double error, const Bounded& value) {
   return {value.low - error, value.meant, value.high + error};
 }
 
-/// `meant`, where it is open which of the two it is.
+/// `meant`, widened to cover `other`, where either may be the result.
 inline Bounded either(const Bounded& meant, const Bounded& other) {
   return {std::min(meant.low, other.low), meant.meant, std::max(meant.high, other.high)};
 }

@@ -40,8 +40,8 @@ Matrix inverse(const Matrix& m) {
   return result;
 }
 
-/// Linear between texel centres, clamped to the edge, at t; `spread` is how far, in texels, the sample may lie
-/// from there along each axis.
+/// Trilinear sample at t, clamped to the edge. `spread`: how far the sample's position may be off along each
+/// axis, in texels.
 Source sample(const Field& field, const Vec3& t, const Vec3& spread) {
   std::array<int, 3> low{}, high{};
   Vec3 weight{};
@@ -62,7 +62,7 @@ Source sample(const Field& field, const Vec3& t, const Vec3& spread) {
     for (int i = 0; i < 8; ++i)
       corner[i] = texel(i & 1 ? high[0] : low[0], i & 2 ? high[1] : low[1], i & 4 ? high[2] : low[2], channel);
     double value = 0;
-    Vec3 steepest{};  // along an axis the slope is greatest on an edge of the cell
+    Vec3 steepest{};  // along each axis, the slope is greatest on an edge of the cell
     for (int i = 0; i < 8; ++i) {
       double part = 1;
       for (int axis = 0; axis < 3; ++axis) part *= i >> axis & 1 ? weight[axis] : 1 - weight[axis];
@@ -77,7 +77,7 @@ Source sample(const Field& field, const Vec3& t, const Vec3& spread) {
   return result;
 }
 
-/// Where the sample may lie in the next cell, that one's slopes count too.
+/// As sample(), but includes the slopes of a neighbouring cell that the sample may lie in.
 Source sample_near_faces(const Field& field, const Vec3& t, const Vec3& spread) {
   Source result = sample(field, t, spread);
   for (int axis = 0; axis < 3; ++axis) {
@@ -94,7 +94,7 @@ Source sample_near_faces(const Field& field, const Vec3& t, const Vec3& spread) 
 }
 
 Bounded look_up(const Table& table, const Bounded& value, int channel) {
-  // A filter in bytes has weights of 8 bits, and answers in bytes: one of the two next to the exact answer.
+  // A byte filter has 8-bit weights and returns one of the two bytes next to the exact value.
   const double weight = table.bytes ? 1.0 / 256 : 0;
   const double low = value.low - weight / table.scale, high = value.high + weight / table.scale;
   Bounded result = exactly(entry_at(table, value.meant, channel));
@@ -112,7 +112,7 @@ Bounded look_up(const Table& table, const Bounded& value, int channel) {
   return result;
 }
 
-/// The fragment of one sample, and what a measured table may make of it (premultiplied if `weighted`).
+/// The fragment of one sample, and the error of a measured transfer function (premultiplied if `weighted`).
 struct Fragment {
   Source colour{};
   Colour table_error{};
@@ -127,8 +127,8 @@ Fragment fragment(const Volume& volume, const Source& value, const Precision& pr
                         colour.high * volume.factor[c]};
   }
   if (volume.field.components == 4 || precision.table_cells == 0) return result;
-  // Between its entries the measured table is linear: half the second difference over one cell to either side
-  // bounds its error, wherever the cells begin.
+  // The measured transfer function is linear between its entries: half the second difference over one cell to
+  // either side bounds its error, wherever the cell boundaries lie.
   const double cell = 1 / precision.table_cells;
   const auto at = [&](double place, int c) {
     const double colour = entry_at(volume.table, place, c) * volume.factor[c];
@@ -137,7 +137,7 @@ Fragment fragment(const Volume& volume, const Source& value, const Precision& pr
   const double place = value[0].meant;
   for (int c = 0; c < 4; ++c)
     result.table_error[c] = std::abs(at(place - cell, c) + at(place + cell, c) - 2 * at(place, c)) / 2;
-  // Where it is the square that is tabled.
+  // For alpha whose square was measured.
   result.table_error[3] *= std::max(1.0, 2 * result.colour[3].high);
   return result;
 }
@@ -171,7 +171,7 @@ Bounded blended(const BlendFunction& function, const Bounded& source, const Boun
   const auto at = [&](double s, double d, double sa, double da) {
     return s * factor_of(function.source, sa, da) + d * factor_of(function.destination, sa, da);
   };
-  // Rising with source and destination, affine in each alpha: the ends are taken at the intervals' ends.
+  // Increasing in source and destination and affine in each alpha: the extremes lie at the intervals' ends.
   Bounded result{1e300, at(source.meant, destination.meant, source_alpha.meant, destination_alpha.meant),
                  -1e300};
   for (const double sa : {source_alpha.low, source_alpha.high})
@@ -182,7 +182,7 @@ Bounded blended(const BlendFunction& function, const Bounded& source, const Boun
   return result;
 }
 
-/// Blends `source` into `pixel`. Where a fragment is nothing at all, nothing is rounded.
+/// Blends `source` into `pixel`. A fragment that is certainly zero causes no rounding.
 void blend(const Blending& blending, Fragment source, const Rounding& rounding, Source& pixel) {
   const bool adds = blending.colour.equation == Equation::add;
   const bool weighted = blending.colour.source == Factor::source_alpha;
@@ -207,13 +207,13 @@ void blend(const Blending& blending, Fragment source, const Rounding& rounding, 
   }
 }
 
-/// Blends what came of a whole volume: `pixel` is that already, and becomes what may be stored.
+/// Blends the result of a whole volume: `pixel` holds it already, and becomes the interval that may be stored.
 void store(const Rounding& rounding, const Blending& blending, Source& pixel) {
   for (int c = 0; c < 4; ++c) {
     const BlendFunction& function = c == 3 ? blending.alpha : blending.colour;
     double error = c == 3 ? rounding.alpha_source : rounding.source;
     if (function.equation == Equation::add) error += c == 3 ? rounding.alpha_result : rounding.result;
-    // The rounded alpha weights what was there, which is 1 at most.
+    // The rounded alpha weights the destination, which is at most 1.
     if (c < 3 && function.equation == Equation::add && function.destination == Factor::one_minus_source_alpha)
       error += rounding.alpha_source;
     if (pixel[c].high < no_sample) error += rounding.relative * std::abs(pixel[c].high);
@@ -222,16 +222,16 @@ void store(const Rounding& rounding, const Blending& blending, Source& pixel) {
   }
 }
 
-/// A solid triangle at one pixel.
+/// An opaque triangle at one pixel.
 struct Surface {
   double depth = 0;
   double depth_error = 0;
-  bool sure = false;   ///< it covers the pixel's centre, wherever its vertices were rounded to
-  bool meant = false;  ///< it does in exact arithmetic
+  bool sure = false;   ///< it covers the pixel's centre for any rounding of its vertices
+  bool meant = false;  ///< it does so in exact arithmetic
   std::array<double, 3> colour{};
 };
 
-/// The solid triangles over each pixel, rows bottom up.
+/// The opaque triangles over each pixel, bottom row first.
 std::vector<std::vector<Surface>> rasterised(const Frame& frame, const Precision& precision) {
   std::vector<std::vector<Surface>> surfaces(static_cast<std::size_t>(frame.width) * frame.height);
   for (const Triangle& triangle : frame.solid) {
@@ -254,7 +254,7 @@ std::vector<std::vector<Surface>> rasterised(const Frame& frame, const Precision
     const auto [y0, y1] = range(1, frame.height);
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x) {
-        double inside = 1e9;  // pixels to the nearest edge
+        double inside = 1e9;  // distance to the nearest edge, in pixels
         for (int i = 0; i < 3; ++i) {
           const Vec3 &a = p[i], &b = p[(i + 1) % 3];
           const double ex = b[0] - a[0], ey = b[1] - a[1];
@@ -271,7 +271,7 @@ std::vector<std::vector<Surface>> rasterised(const Frame& frame, const Precision
   return surfaces;
 }
 
-/// The surfaces that may be the one that is seen, the meant one first; null: none is.
+/// The surfaces that may be the visible one, the exact one first; null: no surface.
 std::vector<const Surface*> seen(const std::vector<Surface>& surfaces) {
   const Surface* meant = nullptr;
   double surely_hidden_from = 2;
@@ -283,7 +283,7 @@ std::vector<const Surface*> seen(const std::vector<Surface>& surfaces) {
   for (const Surface& surface : surfaces)
     if (&surface != meant && surface.depth - surface.depth_error <= surely_hidden_from)
       result.push_back(&surface);
-  // An edge within a mesh belongs to one of its two triangles: no hole opens between them, but along an outline
+  // An edge inside a mesh belongs to one of its two triangles, so no hole opens between them; along an outline
   // one may.
   if (meant != nullptr && surely_hidden_from > 1) result.push_back(nullptr);
   return result;
@@ -304,7 +304,8 @@ class PixelRay {
     }
   }
 
-  /// Calls `take(fragment, sure, meant)` for every slice that this pixel meets, or may meet, before `surface`.
+  /// Calls `take(fragment, sure, meant)` for every slice that certainly or possibly covers this pixel before
+  /// `surface`.
   template <typename Take>
   void meet(const Precision& precision, const Surface* surface, bool weighted, Take take) const {
     for (const double offset : volume_.offsets) {
@@ -367,8 +368,8 @@ Fragment solid_colour(const Frame& frame, const Surface* surface) {
   return result;
 }
 
-/// Calls `pixel_before(rays, surface)` for every surface that may be seen at each pixel; what it answers is
-/// united.
+/// Calls `pixel_before(rays, surface)` for every surface that may be visible at each pixel, and unites the
+/// returned intervals.
 template <typename PixelBefore>
 Image for_each_pixel(const Frame& frame, const std::vector<const Volume*>& volumes, const Precision& precision,
                      PixelBefore pixel_before) {
@@ -430,7 +431,7 @@ bool rounds(const Rounding& rounding) {
   return rounding.source > 0 || rounding.result > 0 || rounding.relative > 0;
 }
 
-/// What one volume's slices make of nothing.
+/// Composites one volume's slices onto an empty pixel.
 Source alone(const PixelRay& ray, const Surface* surface, const Blending& own, const Precision& precision) {
   const bool weighted = own.colour.source == Factor::source_alpha;
   Blending blending{own.colour, own.colour};
@@ -447,7 +448,8 @@ Source alone(const PixelRay& ray, const Surface* surface, const Blending& own, c
     met.push_back({fragment, sure, meant});
   });
   if (is_front_to_back(own)) {
-    // The same from the back, where every operation is of one sample's alpha alone: the bounds stay narrow.
+    // The same back to front, where every operation depends on one sample's alpha alone, so the bounds stay
+    // narrow.
     blending.colour = blending.alpha = {Equation::add, Factor::one, Factor::one_minus_source_alpha};
     std::reverse(met.begin(), met.end());
   }
@@ -468,14 +470,14 @@ Image draw(const Frame& frame, const Precision& precision, const Rounding& each_
     const Fragment behind = solid_colour(frame, surface);
     if (!frame.background_last) {
       pixel = behind.colour;
-      // It was stored before anything was drawn onto it.
+      // The background was rounded when it was stored.
       const double absolute = std::max(each_slice.source, each_volume.source);
       const double relative = std::max(each_slice.relative, each_volume.relative);
       for (Bounded& channel : pixel) channel = clamped(within(absolute + relative * channel.meant, channel));
     }
     for (const PixelRay& ray : rays) {
       if (in_one) {
-        // No slice is brighter than 1, but all of them together may be.
+        // No single slice is brighter than 1, but their sum may be.
         blend(frame.blending, {alone(ray, surface, frame.blending, precision), {}}, {.clamps = false}, pixel);
       } else {
         ray.meet(precision, surface, weighted, [&](const Fragment& fragment, bool sure, bool meant) {
@@ -517,7 +519,7 @@ Verdict judge(const Image& image, const std::vector<double>& drawn, int channels
     const double beyond = std::max(bound.low - drawn[i], drawn[i] - bound.high);
     verdict.beyond = std::max(verdict.beyond, beyond);
     if (beyond > slack) ++verdict.outside;
-    // Nothing to the one and something to the other, of a minimum along an edge.
+    // For a minimum along an edge, one image may have a sample where the other has none.
     if (bound.high == no_sample || drawn[i] > 1e30) continue;
     const double error = drawn[i] - bound.meant;
     verdict.rms += error * error;

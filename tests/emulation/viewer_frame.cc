@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The volume file as the description says it is drawn: one value in [0,1] per voxel.
+/// Reads the volume file in the described type and range: one value in [0,1] per voxel.
 std::vector<double> read_values(const Json& volume) {
   std::ifstream file(volume.at("file").get<std::string>(), std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -49,8 +49,8 @@ Matrix matrix_of(const Json& scale_and_translate) {
   return {scale[0], 0, 0, 0, 0, scale[1], 0, 0, 0, 0, scale[2], 0, translate[0], translate[1], translate[2], 1};
 }
 
-/// Mode `time` shows another step of the volume in every frame: a share of each voxel's value, in whole 256ths,
-/// that swings once in twelve frames.
+/// Mode `time` shows another time step in every frame: every value is scaled by a factor, in whole 256ths, that
+/// oscillates with a period of twelve frames.
 void step_in_time(int frame, std::vector<double>& values) {
   const int share = static_cast<int>(std::lround(256 * (0.8 + 0.2 * std::cos(2 * M_PI * (frame % 12) / 12))));
   for (double& value : values) {
@@ -59,7 +59,7 @@ void step_in_time(int frame, std::vector<double>& values) {
   }
 }
 
-/// Mode `stacks` has a slice in each layer of voxels, across the axis that is nearest to the direction of view.
+/// Mode `stacks` draws one slice per layer of voxels, across the axis nearest to the viewing direction.
 void lay_across_axis(const Vec3& direction, bool front_to_back, Volume& volume) {
   int axis = 0;
   for (const int other : {1, 2})

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the fuzzers of streams change an input: by words, since a stream is words, and by bytes as ever.
+// Custom mutator of the stream fuzzers: mutates by words, since a stream consists of words, and by bytes as
+// usual.
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -12,7 +13,7 @@ namespace {
 constexpr std::array<std::uint64_t, 20> extremes = {
     0, 1, 2, 3, 4, 16, 255, 4096, 65536, 0x7fff'ffff, 0x8000'0000, 0xffff'ffff, std::uint64_t(1) << 40,
     ~std::uint64_t(0), std::uint64_t(1) << 63,
-    // References of every kind to what may be there.
+    // References of every kind to data that may exist.
     std::uint64_t(1) << 56 | 4, std::uint64_t(2) << 56, std::uint64_t(3) << 56 | 8, std::uint64_t(4) << 56 | 8,
     std::uint64_t(5) << 56 | 4};
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fuzzes with the targets of build-fuzz/, and then says how much of its code each one reached, by the targets of
-build-fuzz-coverage/. A finding, or a target that reaches less than it should, is status 1.
+"""Fuzzes with the targets of build-fuzz/, then reports how much of its code each one reached, using the targets of
+build-fuzz-coverage/. Ends with status 1 on a finding, or if a target reaches fewer lines than it should.
 
     fuzz.py [--runs N] [TARGET...]
 """
@@ -26,8 +26,8 @@ SAY_SECONDS = 30
 
 @dataclasses.dataclass(frozen=True)
 class Target:
-    """Inputs that are kept, and what of the code it is there for: of that, `least` per cent of the lines are reached.
-    Some of these files also hold the sender's half, which no input reaches."""
+    """A target with its kept inputs and the sources that it tests: at least `least` per cent of their lines must be reached.
+    Some of these files also contain the sender's side, which inputs do not reach."""
     name: str
     sources: tuple
     least: int
@@ -49,13 +49,13 @@ TARGETS = [
     Target("volume_file", ("volume/file/nrrd.cc", "volume/file/meta_image.cc", "volume/file/header_fields.cc", "volume/file/nifti.cc", "volume/file/vti.cc", "volume/file/vti_header.cc",
                            "volume/file/volume_file.cc", "volume/file/zlib_blocks.cc", "volume/file/base64_source.cc",
                            "volume/file/gzip_source.cc"), 80),
-    # Most of its time goes into the GLSL front end.
+    # Most of its time is spent in the GLSL front end.
     Target("program", ("spu/volume/program/",), 60, "program_corpus", 16384),
 ]
 
 
 def folders(target):
-    """Where what it finds worth keeping goes, and what it begins with."""
+    """The folder for inputs worth keeping, followed by the folders of initial inputs."""
     found = OUT / target.name
     found.mkdir(parents=True, exist_ok=True)
     begins = [OUT / "seeds" / target.name, *([KEPT / target.kept] if target.kept else [])]
@@ -71,14 +71,14 @@ def write_seeds(bin_folder):
 
 
 def tell(name, log):
-    """What libFuzzer last said of itself."""
+    """Prints libFuzzer's latest statistics."""
     lines = re.findall(r"^#(\d+)\s.*?cov: (\d+)", log.read_text(errors="replace"), re.M)
     if lines:
         print(f"{name}: {int(lines[-1][0]):,} inputs, {lines[-1][1]} edges", flush=True)
 
 
 def fuzz(target, runs):
-    """Whether nothing was found."""
+    """Returns whether there was no finding."""
     log = OUT / f"{target.name}.log"
     command = [ROOT / "build-fuzz" / "bin" / f"{target.name}_fuzzer", f"-runs={runs}",
                f"-max_len={target.max_bytes}", "-rss_limit_mb=2560", "-timeout=60", "-print_final_stats=1",
@@ -99,7 +99,7 @@ def fuzz(target, runs):
 
 
 def reached(target):
-    """Lines of its sources that all its inputs reach together, and how many there are."""
+    """Number of lines of its sources that all its inputs together reach, and their total number."""
     bin_folder = ROOT / "build-fuzz-coverage" / "bin"
     program = bin_folder / f"{target.name}_fuzzer"
     raw, profile = OUT / f"{target.name}.profraw", OUT / f"{target.name}.profdata"

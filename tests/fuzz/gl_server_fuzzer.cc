@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What neither an application nor a GL server would say: nothing may crash, hang or take memory without
-// measure.
+// Arbitrary messages between an application and a GL server: they must not cause a crash, a hang or excessive
+// memory.
 #include "tests/fuzz/remote_input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -8,13 +8,13 @@
 
 #include "tests/compositor/message_kinds.h"
 
-/// The first byte says which kind of message the others are.
+/// The first byte chooses the kind of message that the remaining bytes form.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace understudy::compositor;
   static const std::vector<testing::MessageKind> kinds = testing::all_message_kinds();
   if (size == 0) return 0;
   const testing::MessageKind& kind = kinds[data[0] % kinds.size()];
-  // Memory of its own, so that a sanitizer sees what leads out of it.
+  // A separate copy, so that sanitizers detect accesses outside.
   const auto bytes = std::as_bytes(std::span(data, size).subspan(1));
   const std::vector<std::byte> payload(bytes.begin(), bytes.end());
   std::vector<std::byte> written;

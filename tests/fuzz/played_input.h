@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the bytes of a fuzzer, or a file of its corpus, are played: once as a trace file, once as bare records,
-// and both as what was recorded and as what waits for answers.
+// Plays the bytes of a fuzzer, or a file of its corpus: as a trace file and as bare records, and both as
+// recorded streams and as streams that wait for answers.
 #pragma once
 
 #include <algorithm>
@@ -27,20 +27,20 @@ inline void play_records(std::span<const std::uint64_t> words, std::span<const s
   }
 }
 
-/// Calls `take(records, payload)` for what the input is as a trace, and for what it is as bare records.
+/// Calls `take(records, payload)` for the input parsed as a trace, and for the input as bare records.
 template <class Take>
 void walk_input(std::span<const std::byte> input, Take take) {
   try {
     TraceReader reader(input);
     while (const auto block = reader.next()) take(block->records, block->payload);
   } catch (const std::runtime_error&) {
-    // What is no trace says so.
+    // Not a trace.
   }
-  // Memory of its own for each part, so that a sanitizer sees what leads out of it.
+  // A separate copy of each part, so that sanitizers detect accesses outside.
   std::vector<std::uint64_t> words(input.size() / 8);
   if (words.empty()) return;
   std::memcpy(words.data(), input.data(), words.size() * 8);
-  // The first word says how many words are records; what follows them is the payload.
+  // The first word gives the number of record words; the payload follows them.
   const std::size_t count = std::min<std::size_t>(words[0] & 0xffff, words.size() - 1);
   const auto end_of_records = words.begin() + 1 + std::ptrdiff_t(count);
   const std::vector<std::uint64_t> records(words.begin() + 1, end_of_records);
@@ -48,7 +48,7 @@ void walk_input(std::span<const std::byte> input, Take take) {
   take(std::span(records), std::span(payload));
 }
 
-/// Each part, from each origin, above a `Driver` of its own: a driver may keep memory of its decoder's.
+/// Plays each part, from each origin, above a new `Driver`, since a driver may retain memory of its decoder.
 template <class Driver>
 void play_input(std::span<const std::byte> input) {
   walk_input(input, [&](auto records, auto payload) {

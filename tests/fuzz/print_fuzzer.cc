@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams that nobody wrote, as text.
+// Arbitrary streams, printed as text.
 #include <memory>
 #include <span>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records that nobody sealed, and messages in records of any length: nothing may crash, hang or take memory
-// without measure.
+// Arbitrary encrypted records, and messages in records of any length: they must not cause a crash, a hang or
+// excessive memory.
 #include "tests/fuzz/record_input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

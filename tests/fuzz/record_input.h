@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the bytes of a fuzzer come as the line of an encrypted session, and as what was sealed in it. The key is
-// known, so that seeds are opened.
+// Interprets the bytes of a fuzzer as encrypted data of a session, and as the plain data in it. The key is
+// known, so that seeds can be decrypted.
 #pragma once
 
 #include <algorithm>
@@ -18,14 +18,14 @@ namespace understudy::spu::testing {
 
 inline constexpr std::array<unsigned char, compositor::session_key_bytes> fuzzed_key{1, 2, 3};
 
-/// What is opened of a line that comes in pieces of at most `most` bytes. Throws MalformedMessage.
+/// Decrypts data that arrives in pieces of at most `most` bytes. Throws MalformedMessage.
 inline std::vector<std::byte> opened(std::span<const std::byte> line, std::size_t most) {
   compositor::RecordOpener opener(fuzzed_key);
   std::vector<std::byte> all;
   while (!line.empty()) {
     const std::span<std::byte> room = opener.room();
     const std::size_t count = std::min({room.size(), most, line.size()});
-    if (count == 0) std::abort();  // a line that never goes on
+    if (count == 0) std::abort();  // the reader accepts no more bytes
     std::ranges::copy(line.first(count), room.begin());
     line = line.subspan(count);
     if (!opener.took(count)) continue;
@@ -36,7 +36,7 @@ inline std::vector<std::byte> opened(std::span<const std::byte> line, std::size_
   return all;
 }
 
-/// As a line that somebody sends. Whether all of it was opened.
+/// Input as received data. Returns whether all of it was decrypted.
 inline bool open_records(std::span<const std::byte> input) {
   try {
     opened(input, input.empty() ? 1 : 1 + std::to_integer<std::size_t>(input.front()));
@@ -46,7 +46,7 @@ inline bool open_records(std::span<const std::byte> input) {
   return true;
 }
 
-/// As what an end sends, in records whose lengths the input says: all of it must come back.
+/// Input as sent data, in records whose lengths the input determines: decryption must restore it.
 inline void seal_and_open(std::span<const std::byte> input) {
   compositor::RecordSealer sealer(fuzzed_key);
   std::vector<std::byte> line;

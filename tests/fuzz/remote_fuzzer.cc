@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes that nobody sent, over TCP: nothing may crash, hang or take memory without measure.
+// Arbitrary bytes over TCP: they must not cause a crash, a hang or excessive memory.
 #include "tests/fuzz/remote_input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the bytes of a fuzzer, or a file of its corpus, come over a link: to both sides of the handshake, as
-// messages over TCP with the images in them, and as what an application and a GL server say to each other.
+// Feeds the bytes of a fuzzer, or a file of its corpus, to both sides of the handshake, as messages over TCP
+// with images in them, and as messages between an application and a GL server.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 
 namespace understudy::spu::testing {
 
-/// What cannot be believed says so by an exception; anything else is a fault.
+/// Input may be refused by a std::runtime_error; anything else is a fault.
 template <class Step>
 bool may_refuse(Step step) {
   try {
@@ -54,7 +54,8 @@ inline void shake_hands(std::span<const std::byte> input) {
   });
 }
 
-/// Whether it was believed. `chunks` is large, and made for the first message that needs it.
+/// Returns whether the message was accepted. `chunks` is large, and is created for the first message that needs
+/// it.
 inline bool take_message(const compositor::Message& message, std::optional<ChunkReceiver>& chunks) {
   return may_refuse([&] {
     if (message.type == compositor::NodeMessage::rendered) {
@@ -73,18 +74,19 @@ inline bool take_message(const compositor::Message& message, std::optional<Chunk
   });
 }
 
-/// All that may come over TCP, from nodes or from a GL server.
+/// All protocols over TCP, of nodes and of GL servers.
 inline constexpr std::array all_protocols{
     compositor::protocol_of(compositor::LauncherMessage{}), compositor::protocol_of(compositor::NodeMessage{}),
     compositor::protocol_of(compositor::LoadMessage{}), protocol_of(GlServerMessage{})};
 
-/// Bytes as they come out of the socket, in pieces of any size. How many messages were believed.
+/// Bytes as received from a socket, in pieces of any size. Returns the number of accepted messages.
 inline int play_remote_input(std::span<const std::byte> input) {
   shake_hands(input);
   int believed = 0;
   std::optional<ChunkReceiver> chunks;
   may_refuse([&] {
-    // More would be zeros, which a few bytes of a compressed block stand for and which take 10 ms to write.
+    // A larger limit would only add zeros, which a compressed block encodes in a few bytes and which take 10 ms
+    // to write.
     compositor::TcpMessageReader reader(all_protocols, std::size_t(1) << 18);
     const std::size_t most = input.empty() ? 1 : 1 + std::to_integer<std::size_t>(input.front());
     while (!input.empty()) {
@@ -98,9 +100,8 @@ inline int play_remote_input(std::span<const std::byte> input) {
   return believed;
 }
 
-/// Messages of an application and of a GL server, one after the other: type (0: it is accepted)
-/// and length as 32-bit words, then
-/// the payload. How many messages were believed.
+/// Messages of an application and a GL server, one after the other: type (0: LauncherMessage::accepted) and
+/// length as 32-bit words, then the payload. Returns the number of accepted messages.
 inline int play_gl_server_input(std::span<const std::byte> input) {
   int believed = 0;
   std::optional<ChunkReceiver> chunks;

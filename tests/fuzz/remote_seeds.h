@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Inputs for fuzzers to begin with: what two ends of a link say to each other, and an application and a GL
-// server, as this version says it.
+// Initial inputs for fuzzers: messages of the two ends of a connection, and of an application and a GL server,
+// in the current protocol version.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace understudy::spu::testing {
 
-using Seeds = std::map<std::string, std::vector<std::byte>>;  ///< by what they are
+using Seeds = std::map<std::string, std::vector<std::byte>>;  ///< by description
 
 /// For play_remote_input() of remote_input.h.
 Seeds remote_seeds();

@@ -17,7 +17,7 @@ std::uint64_t at(const void* pointer) {
   return reinterpret_cast<std::uintptr_t>(pointer);
 }
 
-/// An application, its driver and what is recorded of it.
+/// An application, its driver and the recording of its calls.
 class Scene {
  public:
   std::uint64_t make(CallId call, std::vector<std::uint64_t> words) {
@@ -25,7 +25,7 @@ class Scene {
     encoder_.encode(call, words.data(), records_);
     return invoke(driver_.table(), call, words.data());
   }
-  /// What this driver would not survive.
+  /// Records a call without making it, since this driver would crash.
   void record(CallId call, std::vector<std::uint64_t> words) { records_.append_plain(stable_id(call), words); }
   void answer(CallId call, std::uint64_t result) {
     records_.append_plain(event::answers, {{stable_id(call), result}});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams to begin with, in which what makes a pointer of an argument changes: buffers, arrays, mappings,
-// feedback.
+// Initial streams in which the state changes that determines the meaning of pointer arguments: buffers, arrays,
+// mappings, feedback.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace understudy::spu::testing {
 
-/// By what they are about.
+/// Streams by name of their subject.
 std::map<std::string, Records> scenes();
 
 }  // namespace understudy::spu::testing

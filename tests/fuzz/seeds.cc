@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a corpus to begin with: records of all commands, a few to a file, and scenes.
+// Writes an initial corpus: records of all commands, a few per file, and scenes.
 //
 //     seeds FOLDER
 #include <filesystem>

@@ -38,8 +38,8 @@ void append(std::vector<std::byte>& to, const Plain& value) {
   to.insert(to.end(), bytes.begin(), bytes.end());
 }
 
-/// A file with one block and a right checksum. Of the input the first words are what its header says, and the
-/// rest is its data: packed already, or still to be packed.
+/// A trace file with one block and a valid checksum. The first words of the input fill the block's header; the
+/// rest is the block's data, taken as compressed or to be compressed here.
 std::vector<std::byte> trace_with(std::span<const std::byte> input, bool packed) {
   std::array<std::uint32_t, 3> said{};
   const std::size_t head = std::min(input.size(), sizeof said);
@@ -66,7 +66,7 @@ std::vector<std::byte> trace_with(std::span<const std::byte> input, bool packed)
 
 }  // namespace
 
-/// The first byte says how the others become a file.
+/// The first byte chooses how the remaining bytes become a file.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const auto input = std::as_bytes(std::span(data, size).subspan(1));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams that nobody wrote, above a driver that reads and writes every argument to its extent: whatever the
-// bytes say, nothing may be read or written that is not there, hang, or take memory without measure.
+// Arbitrary streams above a driver that reads and writes every argument to its full extent: they must not cause
+// invalid reads or writes, a hang or excessive memory.
 #include "tests/fuzz/played_input.h"
 #include "tests/spu/stream/reading_driver.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What pages ask of `understudy view`, written by nobody: it is refused, or what it asks for is a camera and a
-// table that can be drawn with.
+// Arbitrary requests of pages to `understudy view`: each is refused, or yields a valid camera and transfer
+// function.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

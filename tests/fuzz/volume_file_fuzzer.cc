@@ -20,7 +20,7 @@ namespace {
 
 using namespace understudy::volume;
 
-/// A folder of this process's own, and nothing else is read whatever files name.
+/// A folder of this process; nothing outside it is read, whatever paths the files contain.
 class Folder {
  public:
   Folder() : path_((std::filesystem::temp_directory_path() / "volume_file_fuzzer.XXXXXX").string()) {
@@ -31,7 +31,7 @@ class Folder {
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
 
-  /// `name` may lie in a folder of its own.
+  /// `name` may contain a subfolder.
   std::string write(const std::string& name, std::span<const std::uint8_t> bytes) const {
     const std::filesystem::path path = std::filesystem::path(path_) / name;
     std::filesystem::create_directories(path.parent_path());
@@ -47,8 +47,8 @@ class Folder {
   ReadableFiles readable_;
 };
 
-/// The names are what most formats are known by. The .img of a .hdr is the same bytes; files beside one of
-/// DICOM may belong to its series, so that it lies in a folder of its own.
+/// Most formats are identified by these names. The .img of a .hdr has the same bytes. A DICOM file has a
+/// separate folder, because neighbouring files may belong to its series.
 constexpr std::array<const char*, 13> names = {"a.nrrd",
                                                "a.nhdr",
                                                "a.nii",
@@ -63,7 +63,7 @@ constexpr std::array<const char*, 13> names = {"a.nrrd",
                                                "dicom/a.dcm",
                                                "a.tif"};
 
-/// A volume that is a folder: its first file, and what else is in it.
+/// A volume that is a folder: its name and its files.
 struct ChunkedNames {
   const char* folder;
   std::vector<const char*> files;
@@ -72,8 +72,8 @@ const std::array<ChunkedNames, 3> chunked = {{{"zarr_2", {".zarray", "0.0.0"}},
                                               {"zarr_3", {"zarr.json", "c/0/0/0"}},
                                               {"image", {"zarr.json", "0/zarr.json", "0/c/0/0/0/0"}}}};
 
-/// Bytes up to the first that is 0 are those of the first file, and so on; what is left is the last one, a
-/// chunk.
+/// The bytes up to the first 0 are those of the first file, and so on; the remaining bytes are those of the
+/// last file, a chunk.
 std::string write_chunked(const Folder& folder, const ChunkedNames& names,
                           std::span<const std::uint8_t> bytes) {
   for (const char* const file : names.files) {
@@ -95,7 +95,7 @@ std::string write_volume(const Folder& folder, std::size_t kind, std::span<const
 
 void read(const std::string& path, const ReadableFiles& files, bool at_end) {
   FileHints hints;
-  hints.channel = 0;  // of one or several
+  hints.channel = 0;  // the only or the first channel
   std::unique_ptr<VolumeFile> file = open_volume(path, hints, files);
   if (at_end && (file->description().time_steps > 1 || file->description().channels > 1)) {
     hints.channel = file->description().channels - 1;
@@ -104,7 +104,7 @@ void read(const std::string& path, const ReadableFiles& files, bool at_end) {
   }
   const std::array<int, 3> size = file->description().size;
   TexelBox box{{0, 0, 0}, size};
-  // Some thousand texels are enough.
+  // A few thousand texels are enough.
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int some = std::min(size[axis], 16);
     if (at_end)
@@ -119,7 +119,7 @@ void read(const std::string& path, const ReadableFiles& files, bool at_end) {
 
 }  // namespace
 
-/// The first byte says which format, and which end is read.
+/// The first byte chooses the format and which end is read.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Folder folder;
   if (size == 0) return 0;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small volumes in every format, for volume_file_fuzzer to begin with. The first byte of each says which of the fuzzer's
-names the rest gets (half of it, rounded down), and which end is read."""
+"""Small volumes in every format, as initial inputs of volume_file_fuzzer. Half of an input's first byte (rounded down) chooses
+the name that the fuzzer gives to the rest, and the byte's lowest bit which end is read."""
 
 import base64
 import gzip
@@ -71,7 +71,7 @@ def dicom(syntax=b"1.2.840.10008.1.2.1", pixels=None, frames=5):
 
 
 def dicom_run_length():
-    """One frame: two planes of bytes, each as a run of 12 literals."""
+    """One frame: two byte planes, each as a run of 12 literals."""
     low, high = SCALARS[0:24:2], SCALARS[1:24:2]
     segment = bytes([11]) + low
     frame = struct.pack("<16I", 2, 64, 64 + len(segment), *([0] * 13)) + segment + bytes([11]) + high
@@ -105,7 +105,7 @@ def tiff(compression=1, tiled=False, description=b""):
 
 
 def zarr(metadata, chunk):
-    """What the fuzzer makes the two files of a folder of."""
+    """Input from which the fuzzer makes the two files of a folder."""
     return metadata.encode() + b"\0" + chunk
 
 
@@ -131,7 +131,7 @@ def zarr_shard():
 
 
 def ome_zarr():
-    """A group, and the one level of its image."""
+    """A group, and the single level of its image."""
     group = ('{"zarr_format":3,"node_type":"group","attributes":{"ome":{"version":"0.5","multiscales":[{"axes":['
              '{"name":"c","type":"channel"},{"name":"z","type":"space","unit":"micrometer"},{"name":"y","type":"space"},'
              '{"name":"x","type":"space","unit":"nanometer"}],"datasets":[{"path":"0","coordinateTransformations":['

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What changes with the protocols and is therefore not kept: inputs for fuzzers to begin with, into one folder
-// for each fuzzer.
+// Writes initial inputs that change with the protocols and are therefore not kept, into one folder per fuzzer.
 //
 //     write_seeds FOLDER
 #include <zstd.h>
@@ -36,8 +35,8 @@ Seeds node_message_seeds() {
   return seeds;
 }
 
-/// For trace_fuzzer.cc: a block that is packed already (1) and one that is not (2), of 20 words each, 6 of them
-/// payload.
+/// For trace_fuzzer.cc: a block that is already compressed (1) and one that is not (2), of 20 words each, 6 of
+/// them payload.
 Seeds trace_seeds() {
   const std::array<std::uint64_t, 20> words = {std::uint64_t(3) << 32 | 7, 1, 2,
                                                std::uint64_t(3) << 32 | 9, 3, 4};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs of OSMesa: an OpenGL of their own, without a window system.
+// Programs that use OSMesa, which is a separate OpenGL without a window system.
 #include <cstdio>
 
 #include "tests/injection/under_injection.h"
@@ -8,7 +8,7 @@ namespace {
 
 using namespace understudy::testing;
 
-/// Images may differ by as much as an 8-bit framebuffer rounds.
+/// Images may differ by the rounding of an 8-bit framebuffer.
 constexpr double good_image = 40;
 
 class OsMesa : public UnderInjection {};
@@ -59,7 +59,7 @@ TEST_P(OsMesa, OpenedByName) {
 TEST_P(OsMesa, OpenedByAbsolutePath) {
   for (const char* how : {"dlsym", "address"}) {
     const Words command{client("osmesa_opened"), LIBRARY_FOLDER "/libOSMesa.so.8", how};
-    // A folder of names does not see paths: the program gets the real one, and works without us.
+    // The folder method does not affect paths: the program gets the real library and works without Understudy.
     if (GetParam() == InjectionMethod::folder) {
       const CountedRun run = run_behind(GetParam(), command);
       EXPECT_EQ(run.outcome.text, run_behind(InjectionMethod::none, command).outcome.text);
@@ -72,7 +72,7 @@ TEST_P(OsMesa, OpenedByAbsolutePath) {
 
 UNDER_EVERY_METHOD(OsMesa);
 
-// Programs ask for OSMesa to find out whether it is there. (The folder cannot tell: interceptor/README.md.)
+// Programs probe whether OSMesa exists. (With the folder method they cannot: interceptor/README.md.)
 class WhereThereIsNoOsMesa : public UnderInjection {};
 
 TEST_P(WhereThereIsNoOsMesa, AProgramIsTold) {

@@ -16,7 +16,7 @@ using namespace understudy::testing;
 
 constexpr double good_psnr = 40;
 
-/// Mesa's other software renderer, which still draws when main has ended.
+/// Mesa's other software renderer, which still draws after main has ended.
 const Words softpipe{"GALLIUM_DRIVER=softpipe"};
 
 class Programs : public UnderInjection {};
@@ -60,7 +60,7 @@ TEST_P(Programs, ForkWithAContextAndTheChildOnlyLeaves) {
 TEST_P(Programs, ForkWithAContextAndTheChildDraws) {
   const CountedRun anew = expect_same({client("forks"), "child_draws_anew"});
   const CountedRun goes_on = expect_same({client("forks"), "child_goes_on"}, {"LP_NUM_THREADS=0"});
-  // The child is left to the driver; the parent's figures are its own.
+  // The child's calls go to the driver only; the parent's counters are separate.
   EXPECT_EQ(anew.total().calls, goes_on.total().calls);
   EXPECT_EQ(anew.total().frames, 1U);
 }
@@ -109,7 +109,7 @@ std::string without_our_lines(const std::string& text) {
   return rest;
 }
 
-// What the ray caster needs is gone by then.
+// The ray caster's resources are released by then.
 TEST_P(Programs, AVolumeAfterMainIsLeftToTheProgram) {
   const Words command{client("around_main"), "current", "volume"};
   const CountedRun bare = run_behind(InjectionMethod::none, command, softpipe);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Another interposer in front of us: `apitrace trace understudy run … program`. Its library is preloaded,
-// answers for every OpenGL that is opened, and takes us for the driver. (Behind us it stands in
-// tests/clients/driver_calls_test.cc.)
+// Another interposer in front of Understudy: `apitrace trace understudy run ... program`. Its library is
+// preloaded, intercepts every OpenGL library that is opened, and treats Understudy as the driver.
+// (tests/clients/driver_calls_test.cc covers apitrace behind Understudy.)
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -66,7 +66,7 @@ TEST_P(UnderATracer, AVolumeIsSubstituted) {
   EXPECT_GT(psnr_of_files(file("bare"), file("behind")), 40);
 }
 
-// With LD_PRELOAD the launcher puts itself first, and a tracer that is preloaded sees nothing.
+// With LD_PRELOAD the launcher puts Understudy first, so a preloaded tracer sees no calls.
 TEST_P(UnderATracer, TheTracerRecordsWhatTheProgramCalls) {
   traced({client("oddities"), "by_address"});
   EXPECT_EQ(recorded().find("glClear(mask = GL_COLOR_BUFFER_BIT)") == std::string::npos,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program, bare and under an injection method: what it printed, and what Understudy counted.
+// Runs a program bare and under an injection method: its output, and Understudy's counters.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace understudy::testing {
 
 using Words = std::vector<std::string>;
 
-/// Of one process that came to the core.
+/// Counters of one process that opened the core library.
 struct Counted {
   std::uint64_t calls = 0;
   std::uint64_t frames = 0;
@@ -34,8 +34,8 @@ CountedRun run_behind(InjectionMethod injection, const Words& command, Words env
 
 class UnderInjection : public ::testing::TestWithParam<InjectionMethod> {
  protected:
-  /// Runs it bare, which must go well, and under the injection method, which must print and answer the same.
-  /// The answer is the run under the injection method.
+  /// Runs `command` bare, which must succeed, and under the injection method, which must give the same output
+  /// and status. Returns the run under the injection method.
   static CountedRun expect_same(const Words& command, const Words& environment = {});
 
   std::string file(const std::string& name) const { return folder_.file(name); }
@@ -46,10 +46,10 @@ class UnderInjection : public ::testing::TestWithParam<InjectionMethod> {
 
 std::string client(const std::string& name);
 
-/// In dB, of two files of bytes; 0 when they are of different lengths.
+/// PSNR in dB of the bytes of two files; 0 if their lengths differ.
 double psnr_of_files(const std::string& a, const std::string& b);
 
-/// An instance of a test for every injection method.
+/// Instantiates a test for every injection method.
 #define UNDER_EVERY_METHOD(Suite)                                                                   \
   INSTANTIATE_TEST_SUITE_P(                                                                         \
       InjectionMethods, Suite,                                                                      \

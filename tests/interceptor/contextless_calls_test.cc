@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A process that never has a context opens no core, and is in the launcher's report all the same.
+// A process that never has a context does not open the core library, but still appears in the launcher's
+// report.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The entry library against the libraries that are installed here: what they export, it must export.
+// Compares the entry library with the installed libraries: it must export everything that they export.
 #include <dlfcn.h>
 #include <elf.h>
 #include <gmock/gmock.h>
@@ -81,7 +81,7 @@ TEST(EntryPoints, TheEntryLibraryNeedsNoOpenGlNoXAndNoCxxLibrary) {
   }
 }
 
-// Real libGL.so.1 reads this table by position.
+// The real libGL.so.1 reads this table by position.
 TEST(EntryPoints, GlvndsTableHasGlvndsOrder) {
   void* glvnd = dlopen(REAL_GLX, RTLD_NOW | RTLD_LOCAL);
   void* entry = dlopen(UNDERSTUDY_ENTRY_LIBRARY, RTLD_NOW | RTLD_LOCAL);

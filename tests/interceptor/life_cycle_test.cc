@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the core hears and what the driver is asked, in order: the entry library's side of core.h.
+// The order of notifications to the core library and of calls to the driver: the entry library's side of
+// core.h.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +34,7 @@ TEST(LifeCycle, AFrameFromTheFirstContextToItsEnd) {
                           "core: glClear", "driver: glClear",                 //
                           "core: glFlush", "driver: glFlush",                 //
                           "core: before swap", "driver: swap 10",
-                          "driver: glFlush",   // the driver's own call: not the core's business
+                          "driver: glFlush",   // the driver's own call: not intercepted
                           "core: after swap",  //
                           "core: before make_current", "core: leaving after 2 calls",
                           "driver: current 0 drawable 0",  //
@@ -69,7 +70,7 @@ TEST(LifeCycle, AShareGroupOutlivesItsFirstContext) {
                           "driver: create 2 share 1",                         //
                           "core: before make_current", "core: leaving after 0 calls",
                           "driver: current 0 drawable 0",  //
-                          "driver: destroy 1",             // its objects live on in the second
+                          "driver: destroy 1",             // its objects survive in the second context
                           "app: the first is destroyed",   //
                           "driver: current 2 drawable 10", "core: current 2 share 1 glx desktop drawable 10",
                           "core: destroyed 1",  //
@@ -196,7 +197,7 @@ TEST(LifeCycle, AFolderWithoutADriverIsSaidAndTheSystemsIsTaken) {
   EXPECT_TRUE(outcome.says("app: glClear ours")) << outcome.text;
 }
 
-// VirtualGL ends the application when the real library turns out to be itself; we look further.
+// VirtualGL ends the application if the supposed real library is VirtualGL itself; Understudy searches further.
 TEST(LifeCycle, OurselvesAreNoDriver) {
   const Outcome outcome =
       run_program({"LD_LIBRARY_PATH=" TEST_STAGE "/entry", "UNDERSTUDY_DRIVER_DIR=" TEST_STAGE "/entry"},
@@ -252,7 +253,7 @@ TEST(LifeCycle, OsMesasFramesEndWhereTheImageIsAskedFor) {
                   "driver: OSMesa current 1 of 3 x 2", "core: current 1 share 0 osmesa desktop drawable",
                   "core: before finish", "core: before make_current", "core: leaving after 0 calls",
                   "driver: OSMesa current 0 of 0 x 0",  //
-                  "driver: OSMesa's glClear",           // the OpenGL of this program, GLX is not opened
+                  "driver: OSMesa's glClear",           // this program's OpenGL; GLX is not opened
                   "driver: OSMesa destroy 1", "core: destroyed 1"));
 }
 
@@ -268,7 +269,7 @@ TEST(LifeCycle, OsMesasContextsShare) {
                           "core: glClear", "driver: OSMesa's glClear", "app: glClear ours, glAccum null"));
 }
 
-// With all registers, and what did not fit into them.
+// With all argument registers, and with arguments on the stack.
 TEST(LifeCycle, AFunctionOutsideTheRegistryGetsItsArguments) {
   EXPECT_THAT(
       play("glx_client", "outside_registry").lines(),

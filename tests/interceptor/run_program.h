@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a program with an environment and collects what it says: the tests of the injection methods look at
-// whole processes.
+// Runs a program with an environment and collects its output: the tests of the injection methods examine whole
+// processes.
 #pragma once
 
 #include <sys/wait.h>
@@ -14,7 +14,7 @@
 namespace understudy::testing {
 
 struct Outcome {
-  int status = 0;  ///< exit status; 128 + signal for a program that a signal ended; 124 when it took over 60 s
+  int status = 0;    ///< exit status; 128 + signal if a signal ended it; 124 after 60 s
   std::string text;  ///< standard output and standard error together
 
   bool says(const std::string& what) const { return text.find(what) != std::string::npos; }
@@ -26,7 +26,8 @@ struct Outcome {
   }
 };
 
-/// `environment` holds NAME=VALUE; `command` is the program and its arguments. No shell looks at either.
+/// `environment` holds NAME=VALUE; `command` is the program and its arguments. They are quoted, so that the
+/// shell does not interpret them.
 inline Outcome run_program(const std::vector<std::string>& environment,
                            const std::vector<std::string>& command) {
   const auto quoted = [](const std::string& text) {

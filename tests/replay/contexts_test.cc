@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several contexts, names that the application chose, and objects that a driver names anew.
+// Several contexts, names chosen by the application, and objects for which a driver returns different names.
 #include <array>
 
 #include "replayed.h"
@@ -9,7 +9,7 @@ namespace {
 
 using Contexts = Replayed;
 
-/// A texture of one colour under a name that the application chose.
+/// A texture of one colour, with a name chosen by the application.
 void make_texture(const spu::DispatchTable& gl, GLuint name, std::array<std::uint8_t, 4> colour) {
   gl.BindTexture(GL_TEXTURE_2D, name);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
@@ -75,7 +75,7 @@ TEST_F(Contexts, WithSyncObjects) {
 }
 
 TEST_F(Contexts, WhoseNamesTheDriverGivesDifferently) {
-  // Names are handed back and given again: what a name means changes over the stream.
+  // Names are deleted and reused, so that the meaning of a name changes over the stream.
   std::array<GLuint, 4> names{};
   gl().GenTextures(4, names.data());
   gl().DeleteTextures(2, names.data());

@@ -14,7 +14,7 @@
 #include "spu/window_system/shown_image.h"
 
 #if defined(__SANITIZE_ADDRESS__)
-/// What Mesa keeps until the process ends is not ours to free.
+/// Suppresses leak reports for memory that Mesa keeps until the process ends.
 extern "C" [[gnu::visibility("default")]] const char* __lsan_default_suppressions();
 const char* __lsan_default_suppressions() {
   return "leak:_dri.so\nleak:libEGL_mesa\nleak:libLLVM\n";

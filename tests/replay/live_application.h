@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small OpenGL program inside the test that is recorded while it draws, and its recording played again.
+// A small OpenGL program inside the test that is recorded while it draws; then its recording is played.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@
 
 namespace understudy::replay_test {
 
-/// RGBA with 8 bits, rows bottom up.
+/// 8-bit RGBA, bottom row first.
 using Pixels = std::vector<std::uint8_t>;
 
 constexpr spu::Extent2D extent{96, 80};  ///< of every drawable
 
-/// A file of this test alone, which is not there yet.
+/// Path of this test's own trace, which does not exist yet.
 std::filesystem::path trace_of_this_test();
 
 spu::RecordedContext compatibility_context(std::uint64_t number, std::uint64_t shares_with = 0);
@@ -34,11 +34,11 @@ class LiveApplication {
   /// Makes the context and makes it current.
   void add(const spu::RecordedContext& context);
   void make_current(std::uint64_t context);
-  /// What the application calls.
+  /// The table that the application calls.
   const spu::DispatchTable& gl() const;
-  /// As a swap of buffers: what is shown is kept.
+  /// Like a buffer swap: keeps the image that is shown.
   void show();
-  /// All contexts go; the trace is whole.
+  /// Destroys all contexts and completes the trace.
   void end();
 
   const std::vector<Pixels>& shown() const { return shown_; }
@@ -56,7 +56,7 @@ struct Played {
   std::vector<std::string> errors;
 };
 
-/// Plays all of the trace on contexts of its own.
+/// Plays the whole trace on new contexts.
 Played play_back(const std::filesystem::path& trace, const std::string& chain = "driver");
 
 }  // namespace understudy::replay_test

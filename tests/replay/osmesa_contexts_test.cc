@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contexts on OSMesa do what contexts on EGL do, although their one colour buffer is a front buffer and no
-// framebuffer is shared.
+// Contexts on OSMesa behave like contexts on EGL, although their single colour buffer is a front buffer and
+// framebuffers are not shared.
 #include "apps/understudy/offscreen/osmesa_contexts.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@
 #include "spu/window_system/shown_image.h"
 
 #if defined(__SANITIZE_ADDRESS__)
-/// What Mesa keeps until the process ends is not ours to free.
+/// Suppresses leak reports for memory that Mesa keeps until the process ends.
 extern "C" [[gnu::visibility("default")]] const char* __lsan_default_suppressions();
 const char* __lsan_default_suppressions() {
   return "leak:libOSMesa\nleak:libLLVM\nleak:libglapi\n";
@@ -62,7 +62,7 @@ class Osmesa : public testing::Test {
     gl().ClearColor(colour[0], colour[1], colour[2], colour[3]);
     gl().Clear(GL_COLOR_BUFFER_BIT);
   }
-  /// The colour of all of the window; -1 where it has several.
+  /// The colour of the whole window; -1 if there are several colours.
   Colour shown(spu::Extent2D size = extent) const {
     const auto pixels = spu::shown_image(gl(), size);
     for (std::size_t i = 4; i < pixels.size(); ++i)
@@ -177,7 +177,7 @@ TEST_F(Osmesa, DrawsIntoTheBackBufferByAllItsNames) {
   EXPECT_EQ(integer(GL_DRAW_BUFFER0), GL_NONE);
   EXPECT_EQ(integer(GL_DRAW_BUFFER1), GL_BACK_LEFT);
   expect_no_error();
-  // In lists it may only stand alone.
+  // In a list, GL_BACK is allowed only alone.
   const std::array<GLenum, 2> wrong = {GL_BACK, GL_NONE};
   gl().DrawBuffers(2, wrong.data());
   EXPECT_NE(gl().GetError(), GLenum(GL_NO_ERROR));
@@ -242,7 +242,7 @@ TEST_F(Osmesa, LeavesFramebufferObjectsAlone) {
   EXPECT_EQ(gl().GetError(), GLenum(GL_INVALID_OPERATION));
   gl().NamedFramebufferDrawBuffer(framebuffer, GL_BACK);
   EXPECT_EQ(gl().GetError(), GLenum(GL_INVALID_OPERATION));
-  // Framebuffer 0 can be named meanwhile.
+  // Framebuffer 0 can be accessed by name meanwhile.
   gl().NamedFramebufferDrawBuffer(0, GL_BACK);
   expect_no_error();
 }
@@ -348,7 +348,7 @@ TEST_F(Osmesa, DrawablesAreSharedByContextsWithDepthAndStencil) {
   gl().Scissor(0, 0, 4, 4);
   gl().Enable(GL_SCISSOR_TEST);
   fill(green);
-  // Another share group, and another profile.
+  // A different share group and a different profile.
   windows.create(core_context(2, 330));
   windows.make_current(2, 7, extent);
   EXPECT_EQ(shown({4, 4}), green);
@@ -400,7 +400,7 @@ TEST_F(Osmesa, ADrawableThatChangesItsSizeIsCleared) {
     windows.make_current(1, drawable, extent);
     EXPECT_EQ(shown(), black);
   }
-  // Also when another context has drawn into it.
+  // The same after another context has drawn into it.
   windows.make_current(1, 7, extent);
   fill(red);
   windows.create(context(2));
@@ -429,7 +429,7 @@ TEST_F(Osmesa, ContextsWithoutDepthShareDrawablesWithThoseThatHaveIt) {
   expect_no_error();
 }
 
-/// What moves a window's contents has the application's state to work in, and must leave it.
+/// Moving a window's contents uses the application's context, and must preserve its state.
 TEST_F(Osmesa, TheStateOfContextsIsUntouchedByWhatMovesBetweenDrawables) {
   add(context(1));
   windows.make_current(1, 7, extent);

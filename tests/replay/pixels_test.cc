@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels on their way to OpenGL: however they lie in the application's memory, the trace holds the same
-// image.
+// Pixel transfers to OpenGL: whatever the layout in the application's memory, the trace holds the same image.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -13,7 +12,7 @@ namespace {
 
 using PixelTransfers = Replayed;
 
-/// A square with the bound texture of `target`.
+/// Draws a square with the bound texture of `target`.
 void draw_textured(const spu::DispatchTable& gl, GLenum target, float left, float depth = 0.5F) {
   gl.TexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   gl.TexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
@@ -53,7 +52,7 @@ TEST_F(PixelTransfers, WithRowLengthSkipsAndAlignment) {
   expect_same_images();
 }
 
-// Not both at once: Mesa 22.3 swaps the wrong bytes then.
+// Not combined, because Mesa 22.3 then swaps the wrong bytes.
 TEST_F(PixelTransfers, WithImagesSkippedInAVolumeOrBytesSwapped) {
   const auto pixels = noise(std::size_t(16) * 16 * 16 * 2);
   gl().PixelStorei(GL_UNPACK_IMAGE_HEIGHT, 9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs and what they are given.
+// Programs and their inputs.
 #include <array>
 #include <cstring>
 #include <string_view>
@@ -113,7 +113,7 @@ TEST_F(CorePrograms, WithUniformBlocksArraysAndTransformFeedback) {
   gl().BeginTransformFeedback(GL_TRIANGLES);
   gl().DrawArrays(GL_TRIANGLES, 0, 3);
   gl().EndTransformFeedback();
-  // The captured vertices are moved once more.
+  // Draws with the captured vertices and moves them once more.
   gl().BindBuffer(GL_ARRAY_BUFFER, buffers[2]);
   gl().VertexAttribPointer(corner, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
   gl().DrawArrays(GL_LINE_LOOP, 0, 3);

@@ -4,8 +4,8 @@
 
     record_traces.py BUILD/bin [NAME...]     without names all of them (WAYS below)
 
-The volumes are made here. Of those that traces_test.cc judges by a drawing in double precision, the volume is kept:
-traces/judged.14x14x14. version_1.ust is not touched: see README.md.
+The volumes are generated here. The volume of the traces that traces_test.cc compares with a drawing in double precision is
+kept: traces/judged.14x14x14. version_1.ust is not touched: see README.md.
 """
 import math
 import os
@@ -18,7 +18,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 
 FIRST_WAYS = {name: ["--mode", name, "--window-size", "160", "128", "--frames", "3"] for name in ("rgba", "table", "core")}
-# As traces_test.cc knows them.
+# The same as in traces_test.cc.
 JUDGED_WAYS = {
     "under": ["--mode", "table", "--operator", "under"],
     "max": ["--mode", "core", "--operator", "max"],
@@ -33,7 +33,7 @@ JUDGED = ["--preset", "engine", "--no-frame", "--background", "0.2", "0.4", "0.6
 
 
 def texel(place, sides, least):
-    """A shell with a bump: smooth, and different from all sides."""
+    """A shell with a bump: smooth, and different from every side."""
     x, y, z = ((c + 0.5) / side - 0.5 for c, side in zip(place, sides))
     radius = math.sqrt(x * x + 1.3 * y * y + z * z)
     shell = math.exp(-60 * (radius - 0.3) ** 2) * (0.6 + 0.4 * math.sin(9 * x + 4 * z))
@@ -55,13 +55,13 @@ def main():
             judged.write_bytes(volume(14, 14, 14, least=30))
         ways = {name: [shell, *options] for name, options in FIRST_WAYS.items()}
         ways.update({name: [judged, *options, *JUDGED] for name, options in JUDGED_WAYS.items()})
-        # The viewer's bricks are 64 texels long: it takes a longer volume to have two.
+        # The viewer's bricks are 64 texels long, so it takes a longer volume to have two of them.
         rod = pathlib.Path(folder) / "rod.72x12x12"
         rod.write_bytes(volume(72, 12, 12))
         ways["bricks"] = [rod, "--mode", "bricks", *JUDGED]
         ways["preint"] = [shell, "--mode", "preint", *JUDGED]
         ways["lit"] = [shell, "--mode", "lit", *JUDGED]
-        # Fewer than sixteen textures in a row are not looked at: its volume is the larger one.
+        # Fewer than sixteen textures in a row are not recognised, so this volume is larger.
         ways["stacks"] = [shell, "--mode", "stacks", *JUDGED]
         for name in sys.argv[2:] or ways:
             trace = HERE / "traces" / f"{name}.ust"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A test that draws with a recorded program, and expects its trace to draw the same.
+// A test that draws with a recorded program, and expects its trace to draw the same images.
 #pragma once
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces that are kept: every version of this program plays them, and sees the same volume in them.
+// Kept traces: every version of this program must play them and recognise the same volume in them.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,16 +29,16 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::IsEmpty;
 
-/// The traces were recorded, and the expected images made, with this driver.
+/// The traces and the expected images were made with this driver.
 constexpr const char* expected_driver = "llvmpipe (LLVM 15.0.6, 256 bits)";
 
 struct Trace {
   std::string name;
   int frames;
-  /// How the viewer was called, beside what JUDGED in record_traces.py says; empty: the emulation lacks the
-  /// volume, and the kept native images judge.
+  /// The viewer's arguments in addition to JUDGED in record_traces.py; empty: the emulation does not support
+  /// this case, and images are compared with the kept native ones.
   std::string way;
-  bool substituted = true;  ///< false: not substituted, as live
+  bool substituted = true;  ///< false: not substituted, as in a live run
 };
 
 const std::vector<Trace>& traces() {
@@ -88,14 +88,14 @@ class Folder {
   fs::path path_;
 };
 
-/// Runs the command and answers its exit status.
+/// Runs the command and returns its exit status.
 int run_program(const std::string& command) {
   const int status = std::system((command + " >/dev/null 2>&1").c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 int understudy(const std::string& arguments) {
-  // Sanitized programs are told what Mesa leaks.
+  // Sanitized programs need suppressions of Mesa's leaks.
   return run_program("LSAN_OPTIONS=print_suppressions=0:suppressions=" MESA_LEAKS " " PROGRAMS "/understudy " +
                      arguments);
 }
@@ -126,7 +126,7 @@ TEST_P(Kept, TracesShowTheSameImagesNatively) {
   }
 }
 
-/// The frame that the viewer describes when it is called as it was for the trace.
+/// The frame described by the viewer when it is called with the arguments of the trace.
 emulation::Frame meant(const Trace& trace, int frame, const fs::path& folder) {
   const fs::path description = folder / "description.json";
   const std::string arguments =
@@ -134,7 +134,7 @@ emulation::Frame meant(const Trace& trace, int frame, const fs::path& folder) {
       " --preset engine --no-frame --background 0.2 0.4 0.6 --window-size 96 80 --slices 20"
       " --offscreen --orbit 25 --frames " +
       std::to_string(frame) + " --describe " + description.string();
-  // What is left when the viewer ends is Mesa's, which is unloaded by then and has no name.
+  // Leaks at the viewer's end are Mesa's, which is unloaded by then and cannot be suppressed by name.
   if (run_program("ASAN_OPTIONS=detect_leaks=0 " PROGRAMS "/understudy-viewer " + arguments) != 0)
     throw std::runtime_error("understudy-viewer failed; call it yourself: understudy-viewer " + arguments);
   return emulation::viewer_frame(nlohmann::json::parse(std::ifstream(description)));
@@ -157,7 +157,7 @@ void expect_judged_well(const emulation::Image& meant, const launcher::RgbaImage
   EXPECT_EQ(verdict.outside, 0) << what;
 }
 
-/// With `nodes` ranks; 0: in the player.
+/// Replays with `nodes` ranks; 0: in the player's process.
 void expect_substituted(const Trace& trace, int nodes) {
   const Folder folder;
   const fs::path report = folder.path() / "report.json";
@@ -280,7 +280,7 @@ TEST(Ranges, OfFramesArePlayedToTheirEndAndSavedFromTheirBegin) {
   EXPECT_TRUE(launcher::parse_frame_range("4-").contains(1'000'000));
 }
 
-/// Frames that need what was drawn, uploaded and compiled before them.
+/// Frames that depend on earlier drawing, uploads and compiled lists.
 TEST(Trimmed, TracesShowTheSameFramesBitForBit) {
   const fs::path trace = trace_of_this_test();
   LiveApplication application(trace);
@@ -298,17 +298,17 @@ TEST(Trimmed, TracesShowTheSameFramesBitForBit) {
     gl.ClearColor(0.1F, 0, 0.1F, 1);
     gl.Clear(GL_COLOR_BUFFER_BIT);
     for (std::size_t i = 0; i < texels.size(); ++i) texels[i] = std::uint8_t(i * std::size_t(frame + 3));
-    // Replaced as a whole in every frame.
+    // Replaced completely in every frame.
     gl.BindTexture(GL_TEXTURE_2D, textures[0]);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
-    // Made once, changed in one place by every frame.
+    // Made once, and changed in a different place by every frame.
     gl.BindTexture(GL_TEXTURE_2D, textures[1]);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     if (frame == 0)
       gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
     gl.TexSubImage2D(GL_TEXTURE_2D, 0, 4 * frame, 0, 4, 8, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
-    // Drawn into by every frame, never cleared but in the first.
+    // Drawn into by every frame, cleared only in the first.
     gl.BindTexture(GL_TEXTURE_2D, textures[2]);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     if (frame == 0) gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
@@ -321,7 +321,7 @@ TEST(Trimmed, TracesShowTheSameFramesBitForBit) {
     gl.Rectf(-1 + 0.5F * float(frame), -1, -0.6F + 0.5F * float(frame), 1);
     gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
     gl.Viewport(0, 0, extent.width, extent.height);
-    // A list that draws and leaves a colour behind.
+    // A list that draws and changes the current colour.
     if (frame == 0) {
       gl.NewList(list, GL_COMPILE);
       gl.Begin(GL_TRIANGLES);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vertices in all the ways that OpenGL takes them: what a trace keeps of them draws the same image.
+// Vertices in all the ways that OpenGL accepts: what a trace keeps of them draws the same image.
 #include <array>
 #include <cstring>
 

@@ -13,7 +13,7 @@ namespace {
 using Metric = std::array<double, 9>;
 using volume::Vec3;
 
-/// Steps of one length where the axes are as long as `axes`, so many along `way`.
+/// Constant steps, for axes of length `axes`, that give `steps` steps along `way`.
 Metric counting(const Vec3& axes, const Vec3& way, double steps) {
   const double length = std::hypot(axes[0] * way[0], axes[1] * way[1], axes[2] * way[2]);
   Metric metric{};
@@ -39,7 +39,7 @@ TEST(AmbiguousSteps, AreToldByAQuarterOfAStepAsLongAsStepsAreNow) {
   volume::RaySteps steps;
   steps.metric = alike.front();
   EXPECT_TRUE(tells_apart(alike, steps, slightly));
-  for (double& number : steps.metric) number /= 20;  // so many times as long
+  for (double& number : steps.metric) number /= 20;  // steps of 20 times the length
   EXPECT_FALSE(tells_apart(alike, steps, slightly));
 }
 

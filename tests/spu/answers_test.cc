@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The track unit answers queries itself: never anything but what the driver would have answered. Above a real
-// driver, through calls with any arguments.
+// The track unit answers queries itself, and must return exactly what the driver would have returned. Tested
+// above a real driver, after calls with arbitrary arguments.
 #include "spu/track/answers.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,8 @@ const DispatchTable* installed = nullptr;
 std::uint64_t asked = 0;
 DispatchTable real{};
 
-/// The chain of a context of its own: `gl()` is track with answers, `real` the driver that counts two queries.
+/// A chain with a context of its own: `gl()` is the track unit that answers queries, `real` the driver. Two
+/// queries are counted when they reach the driver.
 class AnswersAbove : public ::testing::TestWithParam<Profile> {
  protected:
   void SetUp() override {
@@ -162,7 +163,7 @@ TEST(Answers, AreAskedForOnRequestOnly) {
   EXPECT_EQ(chain.head(Phase::plain).GetIntegerv, driver.GetIntegerv);
 }
 
-/// Every name that a row of the state has, and some limits.
+/// Every name in the rows of the state table, and some limits.
 std::vector<GLenum> all_names() {
   std::vector<GLenum> names = {GL_MAX_TEXTURE_SIZE, GL_MAX_VIEWPORT_DIMS, GL_SUBPIXEL_BITS, GL_MAJOR_VERSION};
   for (const StateRow& row : state_rows()) {
@@ -183,8 +184,8 @@ std::array<std::byte, 32 * sizeof(T)> answer_of(Ask ask) {
   return bytes;
 }
 
-/// Asks for everything on both sides, in the `way` of that number, and compares all bytes that could be
-/// written.
+/// Queries every name on both sides, with the function that `way` selects, and compares all bytes that could be
+/// written. Returns the first name that differs, or "".
 std::string first_difference(const DispatchTable& gl, const DispatchTable& driver, unsigned way) {
   static const std::vector<GLenum> names = all_names();
   const auto same = [](auto ask_both) { return ask_both(0) == ask_both(1); };
@@ -228,7 +229,7 @@ std::string first_difference(const DispatchTable& gl, const DispatchTable& drive
   return {};
 }
 
-/// Calls whose effect is outside OpenGL's state, that wait, or whose arguments cannot be any.
+/// False for calls that have effects outside OpenGL's state, that wait, or that need particular arguments.
 bool can_be_made(CallId call) {
   const std::string_view name = call_name(call);
   constexpr std::array<std::string_view, 20> never = {
@@ -306,7 +307,7 @@ class AnyArguments {
                                                                       "glLightM",  "glTexGen", "glPixelT"};
 
   std::uint64_t memory() {
-    // Floats, integers and names alike; the last byte ends any text.
+    // Floats, integers and names in turn; the last byte terminates any text.
     const bool floats = random_() % 2 == 0;
     for (std::size_t i = 0; i + 1 < memory_.size() / 4 && i < 64; ++i) {
       const float number = float(random_() % 9) / 4;
@@ -350,7 +351,7 @@ TEST_P(AnswersAbove, AreTheDriversAfterAnyCall) {
   for (std::size_t i = 0; i < call_count; ++i) {
     const auto call = CallId(i);
     if (slot(real, call) == nullptr || !can_be_made(call)) continue;
-    // Those that change everything cannot be wrong; some do not matter to any value.
+    // Calls that invalidate everything cannot leave a wrong answer; others do not affect any value.
     const StateTopics topics = topics_changed_by(call);
     if (topics == topic::nothing) others.push_back(call);
     if (topics != topic::nothing && topics != topic::everything) setters.push_back(call);
@@ -363,7 +364,7 @@ TEST_P(AnswersAbove, AreTheDriversAfterAnyCall) {
   ASSERT_GT(others.size(), 200U);
   Random random(7);
   AnyArguments arguments(11);
-  // Objects to bind: 1 to 3 of every kind.
+  // Objects to bind: names 1 to 3 of every kind.
   std::array<GLuint, 3> names{};
   gl().GenTextures(3, names.data());
   gl().GenBuffers(3, names.data());
@@ -376,7 +377,7 @@ TEST_P(AnswersAbove, AreTheDriversAfterAnyCall) {
     ASSERT_EQ(first_difference(gl(), real, step), "") << "before step " << step;
     invoke(gl(), call, arguments.make(call));
     ASSERT_EQ(first_difference(gl(), real, step), "") << "after " << call_name(call) << ", step " << step;
-    // Modes in which most commands are refused, and lists in which they are not executed, are left soon.
+    // Leaves modes in which most commands are refused, and display lists in which they are not executed.
     if (step % 64 == 63) {
       if (compatibility()) {
         gl().End();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chains from text: which are assembled, and what is said of the others.
+// Chains from text: which ones are assembled, and the error messages for the others.
 #include "spu/registry/assemble.h"
 
 #include <gmock/gmock.h>
@@ -43,7 +43,7 @@ constinit const UnitDescription sample_description{.name = "sample",
                                                      return std::make_unique<Pass>();
                                                    }};
 
-/// All there are, and the sample.
+/// All units, and the sample unit.
 UnitTable units() {
   static const std::vector<const UnitDescription*> all = [] {
     std::vector<const UnitDescription*> table(unit_table().begin(), unit_table().end());
@@ -73,7 +73,7 @@ TEST_F(Assemble, KnowsItsUnitsByName) {
     EXPECT_TRUE(names.insert(unit->name).second) << unit->name;
     EXPECT_STRNE(unit->help, "") << unit->name;
     EXPECT_EQ(unit->make == nullptr, std::string_view(unit->name) == "driver") << unit->name;
-    // Defaults are values that the options take; option_values() would throw.
+    // Defaults must be valid values; otherwise option_values() throws.
     UnitSetting defaults{unit->name, {}, "here"};
     for (const UnitOption& option : unit->options) {
       EXPECT_STRNE(option.help, "") << unit->name << " " << option.name;
@@ -86,7 +86,8 @@ TEST_F(Assemble, KnowsItsUnitsByName) {
   }
 }
 
-// Where no server connection is, link cannot be made, and pack before it would have nobody to hand calls to.
+// Without a server connection, `remote` cannot be made, and `pack` before it would have no unit to pass calls
+// to.
 TEST_F(Assemble, MakesAChainWholeOrNotAtAll) {
   EXPECT_THAT(error_of("pack remote"), HasSubstr("understudy run --remote"));
   EXPECT_THAT(error_of("perf(file=calls.json) pack remote"), HasSubstr("understudy run --remote"));
@@ -95,9 +96,9 @@ TEST_F(Assemble, MakesAChainWholeOrNotAtAll) {
 TEST_F(Assemble, EveryUnitStandsAboveTheDriver) {
   for (const UnitDescription* unit : unit_table()) {
     if (unit->position == UnitPosition::last) continue;
-    // Such pairs are assembled from their first unit; traces are files, and have tests of their own.
+    // Such pairs are assembled from their first unit; traces are files and have tests of their own.
     if (std::string_view(unit->name) == "unpack" || std::string_view(unit->name) == "trace") continue;
-    // Others draw with it, and have to be somewhere (tests/spu/tiles).
+    // `tiles` needs tile workers and their addresses (tests/spu/tiles).
     if (std::string_view(unit->name) == "tiles") continue;
     std::string chain;
     for (const char* name : {unit->needs, unit->name, unit->leads_to, "driver"}) {

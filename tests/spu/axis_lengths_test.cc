@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The metric of the world, told by the camera alone.
+// The metric of world space, derived from the camera alone.
 #include "spu/volume/proxy/axis_lengths.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ Matrix4 random_rotation(std::mt19937& random) {
           1};
 }
 
-/// From texture space to the eye's: a box of those edges, turned, some way before the eye.
+/// From texture space to eye space: a box with edges `edges`, rotated, at some distance in front of the eye.
 Matrix4 model_view(const Vec3& edges, std::mt19937& random) {
   Matrix4 stretched = volume::identity();
   for (std::size_t k = 0; k < 3; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slices under every blending that the nodes know, into framebuffers of several formats, against the same
-// slices in double precision; every channel has its own bound (`tests/emulation/precision.h`).
+// Slices under every blending that the nodes support, in framebuffers of several formats, compared with the
+// same slices in double precision. Every channel has its own bound (`tests/emulation/precision.h`).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace understudy::spu::testing {
 namespace {
 
-/// How slices blend, for the driver and for the judge.
+/// How slices blend, for the driver and for the emulation.
 struct Blend : SliceBlending {
   emulation::Blending meant;
 };
@@ -122,20 +122,20 @@ const std::vector<Format>& formats() {
   return all;
 }
 
-/// What one image of all slices may be off in a framebuffer of the format: it is blended once; alpha that
-/// stands apart is made by itself, and goes there in two steps.
+/// Error bound of one image of all slices in a framebuffer of the format: it is blended once. Separate alpha is
+/// rendered in a request of its own and blended in two steps.
 emulation::Rounding once(const Format& format) {
   emulation::Rounding rounding = emulation::presented(format.rounding);
   rounding.alpha_result *= 2;
   if (format.alpha_bits <= 8) rounding.alpha_result += emulation::alpha_termination;
-  // The image itself: two roundings for each of the slices.
+  // The image itself: two roundings per slice.
   rounding.relative += 2 * 40 * emulation::float_step;
   return rounding;
 }
 
 class EveryBlending : public ::testing::TestWithParam<Case> {
  protected:
-  /// Draws one frame of the scene into a framebuffer of the format, bare or under the chain.
+  /// Draws one frame of the scene into a framebuffer of the format, with or without the chain.
   static std::vector<float> frame(GlApplication& app, const ColourTarget& target, const SliceScene& scene,
                                   bool under) {
     app.use_chain(under);
@@ -179,7 +179,7 @@ TEST_P(EveryBlending, LiesWithinItsArithmeticsBoundsInEveryColourFormat) {
           emulation::draw(exact, emulation::ours, {.clamps = format.rounding.clamps}, once(format));
       expect_within(what.c_str(), shown, under);
       EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
-      // The judge is not blind.
+      // The bounds must be able to detect a missing volume.
       app->use_chain(false);
       target.clear(GetParam().background);
       EXPECT_GT(channels_outside(shown, target.read()), 500) << "there is nothing to be seen";
@@ -187,7 +187,7 @@ TEST_P(EveryBlending, LiesWithinItsArithmeticsBoundsInEveryColourFormat) {
   }
 }
 
-/// Refusals: destination and blending do not go together, or it cannot be told that they do.
+/// Refused: blending does not suit the destination's format, or it is unknown whether it does.
 struct RefusedTarget {
   const char* name;
   GLenum internal_format;
@@ -253,7 +253,7 @@ struct Destination {
 
 class Destinations : public ::testing::TestWithParam<Destination> {};
 
-/// The intensity of a colour that is stored as sRGB (IEC 61966-2-1).
+/// Linear intensity of a colour stored as sRGB (IEC 61966-2-1).
 float intensity(float stored) {
   return stored <= 0.04045F ? stored / 12.92F : std::pow((stored + 0.055F) / 1.055F, 2.4F);
 }
@@ -298,7 +298,7 @@ std::vector<Destination> destinations() {
   return {{{"RGBA8", GL_RGBA8, bytes, 8}, 4},
           {{"RGB8", GL_RGB8, bytes, 0}, 3},
           {{"RGB10_A2", GL_RGB10_A2, emulation::normalised(10, 2), 2}, 4},
-          // Blue has the fewest bits of mantissa: five.
+          // Blue has the shortest mantissa: five bits.
           {{"R11F_G11F_B10F", GL_R11F_G11F_B10F, emulation::floating(5), 0}, 3},
           {{"R8", GL_R8, bytes, 0}, 1},
           {{"RG16F", GL_RG16F, emulation::floating(10), 0}, 2},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which blocks differ from what was sent.
+// Detects which blocks differ from what was sent.
 #include "spu/volume/upload/block_hashes.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ TEST(BlockHashes, EveryBitAndEveryPlaceCounts) {
   hashes.take(block, texels);
   for (std::size_t i = 0; i < texels.size(); i += 5)
     for (int bit = 0; bit < 8; ++bit) {
-      // Two equal bits, which must not take each other away.
+      // Two equal bits, whose hashes must not cancel.
       texels[i] ^= std::byte(1 << bit);
       EXPECT_EQ(hashes.take(block, texels).size(), 1U);
       texels[(i + 1024) % 4096] ^= std::byte(1 << bit);
@@ -90,7 +90,7 @@ TEST(BlockHashes, RandomChangesAreCoveredExactly) {
       texels[at(x, y, z)] ^= std::byte(1 + random() % 255);
       expected[(z - 5) / 16 * 12 + y / 16 * 4 + (x - 3) / 16] = true;
     }
-    // In segments of any thickness, as the first time, or of whole blocks.
+    // In slice ranges of any thickness, as in a first upload, or of whole blocks.
     std::vector<TexelBox> changed;
     for (TexelBox slice_segment = stored; slice_segment.low[2] < stored.high[2];
          slice_segment.low[2] = slice_segment.high[2]) {

@@ -24,7 +24,8 @@ constexpr const char* vertex_source =
 
 constexpr const char* fragment_source =
     "#version 330\n"
-    // `gradients` is never set, and so is on the unit of `field`, as in programs that keep lighting for later.
+    // `gradients` is never set and therefore uses the unit of `field`, as in programs that reserve a lighting
+    // texture.
     "uniform sampler3D field, gradients; uniform sampler1D table; uniform sampler2D opaque, noise;\n"
     "uniform mat4 inverse_camera; uniform vec4 eye; uniform vec3 extent; uniform float one_step;\n"
     "uniform int composition; uniform bool straight, divided, lit, whole_rays, jittered, noisy, at_least_one, "
@@ -158,12 +159,12 @@ constexpr const char* wall_fragments =
     "#version 330\n"
     "out vec4 colour; void main() { colour = vec4(0.9, 0.8, 0.1, 1.0); }\n";
 
-/// The first of `from`, which must be there.
+/// Replaces the first occurrence of `from`, which must exist.
 void replace(std::string& text, std::string_view from, std::string_view to) {
   text.replace(text.find(from), from.size(), to);
 }
 
-/// Two triangles a face, counterclockwise from outside.
+/// Two triangles per face, counterclockwise from outside.
 std::vector<GLfloat> box_triangles() {
   std::vector<GLfloat> triangles;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -187,7 +188,7 @@ using Matrix = std::array<double, 16>;  // column-major
 struct Camera {
   Matrix forward;
   Matrix inverse;
-  std::array<float, 4> eye;  ///< in the box's coordinates; with w = 0 the direction of view
+  std::array<float, 4> eye;  ///< in the box's coordinates; with w = 0 the viewing direction
 };
 
 /// projection * translate(0, 0, -distance) * rotate * scale(extent) * translate(-1/2), and its inverse.
@@ -225,7 +226,7 @@ Camera camera_of(const MarchStyle& c, double angle) {
   }
   camera.forward[14] += -zz * c.distance + zt;
   camera.forward[15] += c.parallel ? 1 : c.distance;
-  // Backwards: e from clip, x from e (the rotation's transpose), t from x.
+  // Inverse: e from clip, x from e (the rotation's transpose), t from x.
   const auto backwards = [&](std::array<double, 4> clip) {
     std::array<double, 4> e{};
     if (c.parallel) {
@@ -260,7 +261,7 @@ void append_fan(const std::vector<Corner>& polygon, std::vector<GLfloat>& triang
   }
 }
 
-/// The box's triangles where the camera sees them behind `depth`, closed there by one more face.
+/// The part of the box's triangles that lies behind `depth`, closed there by a cap.
 std::vector<GLfloat> triangles_behind(const Camera& camera, double depth) {
   const auto behind = [&](const Corner& p) {
     double w = camera.forward[15] - depth;
@@ -289,7 +290,7 @@ std::vector<GLfloat> triangles_behind(const Camera& camera, double depth) {
     }
     append_fan(part, triangles);
   }
-  // The rim lies in a plane of constant depth: turned about its middle, as the eye sees it.
+  // The rim lies in a plane of constant depth; its points are sorted by angle about their centre, in eye space.
   const auto seen = [&](const Corner& p) {
     std::array<double, 2> place{camera.forward[12], camera.forward[13]};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -314,7 +315,7 @@ void set_matrix(const DispatchTable& gl, GLuint program, const char* name, const
   gl.UniformMatrix4fv(gl.GetUniformLocation(program, name), 1, GL_FALSE, values.data());
 }
 
-/// The dataset is the box in its own unit; the world lies elsewhere.
+/// Dataset coordinates are the box in its own unit; world coordinates are displaced from them.
 void set_cuts(const DispatchTable& gl, const MarchStyle& style, GLuint program) {
   Matrix to_dataset{};
   Matrix to_texture{};
@@ -401,7 +402,7 @@ void BoxRayCaster::set_up(GlApplication& app) {
   texture(GL_TEXTURE0, GL_TEXTURE_3D, GL_LINEAR);
   const Blob blob;
   std::vector<std::uint8_t> texels = blob.texels();
-  // Around the blob there is nothing, which would be the minimum of all rays.
+  // Around the blob all values are 0, which would be the minimum of all rays.
   if (style.composition == MarchStyle::Composition::minimum || style.dense_rim) {
     for (std::uint8_t& texel : texels) texel = std::uint8_t(255 - texel);
   }
@@ -433,7 +434,7 @@ void BoxRayCaster::set_up(GlApplication& app) {
 }
 
 void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
-  // The table changes with the phase of the stream, so every call asks for it.
+  // The dispatch table changes with the phase of the stream, so it is fetched for every call.
   const auto gl = [&]() -> const DispatchTable& { return app.gl(); };
   const Camera camera = camera_of(style, angle);
   gl().Viewport(0, 0, GlApplication::size, GlApplication::size);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An application that draws the faces of a box with a fragment shader that marches through its volume.
+// An application that draws the faces of a box with a fragment shader that marches through the box's volume.
 #pragma once
 
 #include <array>
@@ -11,68 +11,68 @@
 
 namespace understudy::spu::testing {
 
-/// How it marches.
+/// Variants of the ray march.
 struct MarchStyle {
   enum class Composition { over, maximum, sum, minimum, grey_sum, mean_of_colours, mean_of_values };
 
   Composition composition = Composition::over;
-  bool premultiplied = true;  ///< what the shader writes, and the blend function
-  bool alpha_twice = false;   ///< with `premultiplied`: the blend function multiplies by alpha once more
+  bool premultiplied = true;  ///< the shader's output, and the blend function
+  bool alpha_twice = false;   ///< with `premultiplied`: the blend function multiplies by alpha again
   bool replaces = false;      ///< blending is disabled
-  bool adds = false;          ///< blending adds what is drawn to what is there
-  /// The shader puts its rays over this colour, and writes an alpha of 1.
+  bool adds = false;          ///< blending adds the fragment to the framebuffer
+  /// The shader blends its rays over this colour and writes an alpha of 1.
   std::optional<std::array<float, 3>> background{};
   bool writes_depth = false;
-  bool discards = true;  ///< rays without a sample, and fragments outside of `shown`
-  /// Lower left and upper right corner, in pixels of the window: as vispy clips its views, and takes an edge
-  /// off.
+  bool discards = true;  ///< rays without a sample, and fragments outside `shown`
+  /// Lower left and upper right corner, in window pixels: as vispy clips its views. The default removes one
+  /// edge.
   std::array<float, 4> shown{1, 1, 1000, 1000};
-  float shown_radius = 0;     ///< fragments are discarded that are farther from the window's middle; 0: none
-  bool divided = false;       ///< the way through the box in equal parts, instead of steps of one length
+  float shown_radius = 0;     ///< discards fragments farther from the window's centre; 0: none
+  bool divided = false;       ///< divides the ray into equal parts instead of steps of one length
   bool parallel = false;      ///< the projection
   bool both_faces = false;    ///< neither front nor back faces of the box are culled
   bool face_by_face = false;  ///< each face of the box is a draw
-  float ends_at = 0.999F;     ///< rays end where they are so opaque
-  bool way_from_eye = false;  ///< what the vertex shader hands on is the way from the eye to the box's surface
-  /// The vertex shader's output has another name than the input that reads it, at one location.
+  float ends_at = 0.999F;     ///< rays end at this opacity
+  bool way_from_eye = false;  ///< the varying is the vector from the eye to the box's surface
+  /// The vertex shader's output and the fragment shader's input have different names, but the same location.
   bool matched_by_location = false;
-  bool whole_rays = false;  ///< rays begin at the nearest face, whichever face makes the fragment
-  bool lit = false;         ///< brightness by the gradient
-  /// Diffuse and specular light that shines from the eye, on central differences over 2 `tap`.
+  bool whole_rays = false;  ///< rays begin at the nearest face, whichever face generates the fragment
+  bool lit = false;         ///< brightness depends on the gradient
+  /// Diffuse and specular light from the eye, by central differences over 2 `tap`.
   bool lit_from_eye = false;
   float ambient = 0.3F;
   std::array<float, 3> tap{0.3F / 24, 0.3F / 20, 0.3F / 17};  ///< in texture coordinates
-  bool tap_of_a_texel = false;                                ///< by the texture's size instead
-  bool jittered = false;                                      ///< every ray starts at a place of its own
-  bool noisy = false;  ///< every ray starts later by the number of a texture that repeats over the window
-  /// The noise is filtered by a sampler object: the texture's own filter asks for levels that it does not have.
+  bool tap_of_a_texel = false;                                ///< from the texture's size instead
+  bool jittered = false;                                      ///< every ray has its own start offset
+  bool noisy = false;  ///< start offsets come from a texture that repeats over the window
+  /// A sampler object filters the noise: the texture's own filter requires mipmap levels that it does not have.
   bool noise_sampler = false;
   bool dense_rim = false;                ///< the values are the largest at the faces of the box
-  bool at_least_one = false;             ///< rays that are too short have a sample, too
-  bool reads_depth = false;              ///< rays end at the depth of a texture
+  bool at_least_one = false;             ///< rays that are too short still have one sample
+  bool reads_depth = false;              ///< rays end at the depth that a texture holds
   std::array<float, 3> extent{1, 1, 1};  ///< of the box, in the unit of `step`
   float step = 0.02F;
-  double distance = 3;  ///< of the eye from the middle of the box
+  double distance = 3;  ///< from the eye to the centre of the box
   double near = 0.5;    ///< the near plane
-  /// The box is cut off before the near plane, and closed there, before it is drawn.
+  /// Before it is drawn, the box is cut at the near plane and closed there.
   bool closed_before_eye = false;
   bool half_a_wall = false;  ///< the wall is a triangle that ends along a diagonal of the window
-  /// Planes of a grid of 27 regions, in the dataset's coordinates, and the regions that are kept, x fastest.
+  /// Planes of a grid of 27 regions, in dataset coordinates, and the regions that are kept, x fastest.
   std::array<float, 6> cropping_planes{};
   std::uint32_t kept_regions = all_regions;
   static constexpr std::uint32_t all_regions = (1U << 27U) - 1;
-  /// A point and a normal each, in the world's coordinates: rays begin and end there.
+  /// A point and a normal each, in world coordinates: rays begin and end at these planes.
   std::vector<std::array<float, 6>> clipping_planes;
-  float past_planes = 0;  ///< so many steps behind one there still are samples
+  float past_planes = 0;  ///< samples are taken up to this many steps behind a plane
 };
 
 class BoxRayCaster {
  public:
   explicit BoxRayCaster(const MarchStyle& style) : style(style) {}
 
-  /// Program, box and volume; the application must have a core profile.
+  /// Creates program, box and volume; requires a core profile.
   void set_up(GlApplication& app);
-  /// Clears, draws a wall where `wall` says so (window depth), and the volume.
+  /// Clears, draws a wall at window depth `wall` unless that is 0, and draws the volume.
   void draw(GlApplication& app, double angle, float wall = 0);
   void set_table(GlApplication& app, float opacity) const;
   void set_noise(GlApplication& app, unsigned seed) const;

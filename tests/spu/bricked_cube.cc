@@ -25,7 +25,7 @@ std::vector<std::uint8_t> colours_of_blob() {
   return colours;
 }
 
-/// Where look() puts the eye: 3 before the cube, which is turned.
+/// The eye's position after look(): 3 in front of the rotated cube.
 std::array<double, 3> eye_of(double degrees) {
   const double angle = -degrees * M_PI / 180;
   const double length = std::sqrt(0.2 * 0.2 + 1 + 0.1 * 0.1);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A volume in many textures, above a real driver: from the second frame on it is one, and looks as it did.
+// A volume in many textures, above a real driver: from the second frame on it is one volume with the same
+// image.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,7 +49,8 @@ class Bricks : public ::testing::Test {
     return drawing;
   }
 
-  /// Runs that one frame has substituted, which must look as the application's own.
+  /// Draws one frame, expects it to look like the application's own, and returns the number of runs substituted
+  /// in it.
   std::uint64_t substituted_in(const BrickedCube::Drawing& drawing) {
     const std::uint64_t runs = app->substituted();
     const auto under = frame(true, drawing);
@@ -112,7 +114,7 @@ TEST_F(Bricks, OfWhichOneChangesSendThatOne) {
   const auto changed = frame(true);
   EXPECT_LT(psnr(before_change, changed), 40) << "the new colours change nothing: the test tests nothing";
   expect_merged();
-  // Tiles of 16 texels, of which the brick meets one.
+  // Blocks of 16 texels, of which the brick touches one.
   EXPECT_LE(app->texel_bytes_sent() - sent, 4U * 16 * 16 * 16);
   EXPECT_GT(app->texel_bytes_sent(), sent);
 }
@@ -216,7 +218,7 @@ TEST_F(Bricks, ThatWaitWhenTheNodesAreLostAreShownAllTheSame) {
   };
   EXPECT_GE(substituted_in(drawing), 5U) << "the bricks that waited";
   EXPECT_GE(app->left(), 1U) << "bricks that came later";
-  // Another service is asked for after a while, and told the volume again.
+  // After a while another service is requested and receives the volume again.
   std::uint64_t runs = 0;
   for (int i = 0; i < 10000 && runs != 1; ++i) runs = substituted_in();
   EXPECT_EQ(runs, 1U);
@@ -233,7 +235,8 @@ TEST_F(Bricks, ThatAreDeletedTakeTheVolumeWithThem) {
   for (int i = 0; i < 3; ++i) EXPECT_GE(substituted_in(drawing), 1U);
 }
 
-/// A single stray sample beyond a slice's edge is an extreme as good as any (strayed_samples_test.cc).
+/// For a maximum or minimum, one stray sample beyond a slice's edge can be the result
+/// (strayed_samples_test.cc).
 constexpr double strayed_samples_psnr = 45;
 
 class KindsOfBricks : public Bricks, public ::testing::WithParamInterface<BrickKind> {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Error and time budgets over a real render service, without OpenGL: the image keeps the error that is named,
-// at a cost that falls with it; what cannot be kept is said.
+// Error and time budgets with a real render service, without OpenGL: the image keeps the requested error at a
+// cost that decreases with the error; a budget that cannot be kept is reported.
 #include "spu/volume/budget/budget.h"
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ using volume::Image;
 using volume::Method;
 using volume::RenderRequest;
 
-/// The nodes of a busy machine: each image comes late.
+/// Simulates nodes on a busy machine: each image is late.
 class LateService final : public compositor::RenderService {
  public:
   explicit LateService(compositor::RenderService& service) : service_(service) {}
@@ -59,7 +59,7 @@ class LateService final : public compositor::RenderService {
 
 class BudgetTest : public testing::Test {
  protected:
-  /// A viewer's slices, some 40 of them, through a field that its table shows in shells.
+  /// About 40 slices of a viewer, through a field whose transfer function shows shells.
   void SetUp() override {
     texture = sampled(describe({40, 40, 40}, volume::TexelType::u8), sphere_field(0.35, 0.25));
     texture.description.version = 3;
@@ -81,7 +81,7 @@ class BudgetTest : public testing::Test {
     return budget.request(*service, own, "", texture.description, 1, counters);
   }
 
-  /// Greatest error of every pixel of an image, by the texture itself.
+  /// Greatest error of any pixel, against the integral over the texture itself.
   double error_of(const RenderRequest& request) {
     const auto meaning = std::get<Meaning>(meaning_of(own, texture.description.size));
     const auto medium =
@@ -150,8 +150,8 @@ TEST_F(BudgetTest, ABusyMachineKeepsTheErrorToo) {
 }
 
 TEST_F(BudgetTest, FewerSamplesAreTakenForALargerError) {
-  // Far apart: of settings that keep an error the fastest is taken, as measured, and another load may order
-  // neighbours otherwise.
+  // The errors are far apart: of the settings that keep an error, the one measured as fastest is taken, and
+  // another load may reverse neighbours.
   std::uint64_t last = ~std::uint64_t(0);
   for (const double error : {0.5 / 255, 0.2}) {
     Budget budget({.error = error});
@@ -189,7 +189,7 @@ TEST_F(BudgetTest, AnImageThatIsWrongByMoreMakesTheNextFiner) {
   const std::string before = counters.setting;
   Image wrong = copy_of(service->render(*first).image);
   for (float& value : wrong.rgba) value += 0.1F;
-  // Rays are looked at in a fiftieth of the time that passes: sooner or later some are.
+  // Error checks take a fiftieth of the elapsed time, so some rays are checked sooner or later.
   const auto start = std::chrono::steady_clock::now();
   while (counters.images_over == 0 && std::chrono::steady_clock::now() - start < std::chrono::seconds(60))
     budget.look_at(*service, wrong.view(), 1, counters);
@@ -202,7 +202,7 @@ TEST_F(BudgetTest, AnImageThatIsWrongByMoreMakesTheNextFiner) {
 }
 
 TEST_F(BudgetTest, ATimeIsMetWithTheMostExactThatFits) {
-  // What images take is said by whoever casts them: no clock decides here.
+  // The service reports how long images take, so the result does not depend on a clock.
   Budget budget({.ms = 20});
   ASSERT_TRUE(ask(budget));
   const Image image = copy_of(service->render(*ask(budget)).image);

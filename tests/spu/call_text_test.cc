@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls as a person would write them.
+// Calls as readable text.
 #include "spu/print/call_text.h"
 
 #include <gmock/gmock.h>
@@ -61,7 +61,7 @@ TEST(CallText, ShowsWhatPointersStandFor) {
               EndsWith("value = 128 bytes)"));
 }
 
-// Such pointers are positions in a buffer object: nothing is read there.
+// These pointers are offsets into a buffer object and are not dereferenced.
 TEST(CallText, FollowsNoOffset) {
   const auto* offset = argument<const void*>(24);
   EXPECT_EQ(
@@ -94,7 +94,7 @@ TEST(CallText, ShowsOutcomes) {
             "glGetString(name = GL_VERSION) = \"4.5 of somebody\"");
 }
 
-// Whatever the values, no pointer is followed that is null, and every command has a text.
+// For any values, no null pointer is dereferenced, and every command has a text.
 TEST(CallText, EveryCommandHasOne) {
   const std::array<std::uint64_t, max_parameters> zeros{};
   std::array<std::uint64_t, max_parameters> numbers{};
@@ -102,7 +102,7 @@ TEST(CallText, EveryCommandHasOne) {
     fmt::memory_buffer text;
     append_call(text, CallId(i), zeros.data(), 0);
     EXPECT_THAT(fmt::to_string(text), HasSubstr(std::string(call_name(CallId(i))) + "("));
-    // Values of all sorts, pointers null.
+    // Values of all kinds, with null pointers.
     for (const std::uint64_t value : {std::uint64_t{3}, ~std::uint64_t{0}, std::uint64_t{0x84c0}}) {
       const auto parameters = call_shape(CallId(i)).parameters();
       for (std::size_t p = 0; p < parameters.size(); ++p) numbers[p] = parameters[p].pointer > 0 ? 0 : value;

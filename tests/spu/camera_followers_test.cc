@@ -10,14 +10,14 @@ namespace {
 
 using Camera = CameraFollowers::Camera;
 
-/// An eye of three numbers, which moves on in every image, and a light of two.
+/// An eye of three scalars that moves in every image, and a light of two.
 struct Moving {
   CameraFollowers followers;
   MarchInputs before{};
   float eye = 0;
   bool light_chooses = false;
 
-  /// Whether the light counts as a follower in the next image.
+  /// Returns whether the light counts as a camera follower in the next image.
   bool light_follows(float light, Camera camera = Camera::moved_on) {
     const bool turned = camera != Camera::stayed;
     MarchInputs now;
@@ -120,7 +120,8 @@ TEST(CameraFollowers, AreKnownByTheirNamesWhereOthersCome) {
     EXPECT_TRUE(followers.look(before, now, Camera::moved_on)[0]) << k;
     before = now;
   }
-  // A flag lets a plane choose, which has to be right whenever it changes; the eye is trusted as before.
+  // A flag makes a plane decide about samples: it must be right whenever it changes; the eye is trusted as
+  // before.
   for (int k = 10; k < 30; ++k) {
     const MarchInputs now = image(float(k), float(k), true);
     const std::vector<bool> follow = followers.look(before, now, Camera::moved_on);

@@ -52,7 +52,7 @@ class OverridesFinish final : public Unit {
   static void APIENTRY finish() {}
 };
 
-/// Makes a call when it goes.
+/// Makes a call in its destructor.
 class CallsWhenItGoes final : public Unit {
  public:
   explicit CallsWhenItGoes(Chain& chain) : chain_(chain) {}
@@ -67,7 +67,7 @@ class CallsWhenItGoes final : public Unit {
   const DispatchTable* below_ = nullptr;
 };
 
-/// glClear and glCreateShader throw; what it holds back is a glFlush.
+/// glClear and glCreateShader throw; give_up() makes the call that is held back, a glFlush.
 class Fails final : public Unit {
  public:
   static constexpr char tag = '!';
@@ -173,7 +173,7 @@ TEST_F(ChainTest, ReplacedSlotsAreGuardedToo) {
 }
 
 TEST_F(ChainTest, WithoutADriverTheContextIsLost) {
-  // The GL server is only asked whether it is there.
+  // The chain only tests whether there is a GL server.
   auto* const server = reinterpret_cast<ServerConnection*>(&mock_);
   Chain chain(mock_.table(), std::make_shared<ShareGroup>(), install, {1, 0, server});
   add<Fails>(chain);
@@ -198,7 +198,7 @@ TEST_F(ChainTest, ASlotThatNobodyOverridesIsTheDriversPointer) {
   }
 }
 
-// Units that do nothing cost nothing, however many there are: what the application calls is the driver's own.
+// Units without overrides cost nothing in any number: the application calls the driver's own functions.
 TEST_F(ChainTest, PassingUnitsLeaveTheDriversPointersToTheApplication) {
   Chain tracked(mock_.table(), std::make_shared<ShareGroup>(), install);
   ASSERT_EQ(assemble(tracked, "track driver", nullptr).value_or(""), "");
@@ -291,7 +291,7 @@ TEST_F(ChainTest, AnOverridingUnitHidesAReplacedSlot) {
   for (const Phase phase : phases) EXPECT_EQ(chain_.face(top, phase).Finish, OverridesFinish::finish);
 }
 
-// The order in which two units replace and restore the same slot does not matter.
+// Two units may replace and restore the same slot in any order.
 TEST_F(ChainTest, ARestoredSlotInheritsWhatIsBelowByThen) {
   Unit& high = add<Pass>(chain_);
   Unit& low = add<Pass>(chain_);
@@ -305,7 +305,7 @@ TEST_F(ChainTest, ARestoredSlotInheritsWhatIsBelowByThen) {
   for (const Phase phase : phases) EXPECT_EQ(chain_.head(phase).Clear, mock_.table().Clear);
 }
 
-/// Overrides glFlush while it wants to.
+/// Overrides glFlush while `wants` is set.
 class FlushesAtTimes final : public Unit {
  public:
   static constexpr char tag = 'l';

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chains as text and as JSON: what is read, what is refused and in which words. Nothing here knows a unit.
+// Chains as text and as JSON: what is parsed, and the error messages for what is refused. No units are
+// involved.
 #include "spu/chain_text.h"
 
 #include <gmock/gmock.h>
@@ -98,7 +99,7 @@ TEST(ChainText, WrittenAndReadAgainIsTheSame) {
   }
 }
 
-// Whatever comes in is read or refused with a place; what is read can be written, and reads the same again.
+// Any input is parsed, or refused with a position; a parsed chain can be written and parses to the same chain.
 TEST(ChainText, TakesAnyBytes) {
   const unsigned seed = std::random_device{}();
   std::printf("seed %u\n", seed);

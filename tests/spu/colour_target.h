@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A framebuffer object of a colour format of the test's choice, with depth, as large as the application's
-// framebuffer.
+// A framebuffer object with a chosen colour format and depth, of the size of the application's framebuffer.
 #pragma once
 
 #include <array>
@@ -18,17 +17,17 @@ class ColourTarget {
   ColourTarget(const ColourTarget&) = delete;
   ColourTarget& operator=(const ColourTarget&) = delete;
 
-  /// False where the driver cannot draw into the format.
+  /// False if the driver cannot render to the format.
   bool complete() const { return complete_; }
   void clear(const std::array<float, 4>& colour) const;
-  /// All pixels, RGBA, in float; samples are resolved.
+  /// All pixels as RGBA floats; multisampled buffers are resolved.
   std::vector<float> read() const;
 
  private:
   GlApplication& app_;
   bool multisampled_;
   bool complete_ = false;
-  std::array<GLuint, 2> framebuffers_{};  ///< the second resolves the samples of the first
+  std::array<GLuint, 2> framebuffers_{};  ///< the second one resolves the samples of the first
   std::array<GLuint, 3> buffers_{};       ///< colour, depth, resolved colour
 };
 

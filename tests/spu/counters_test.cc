@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a process remembers of its volumes, when there are more of them than places.
+// Volume counters of a process that has had more volumes than counter slots.
 #include "spu/report/counters.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run of slices is drawn more than once: to be looked at, to be compared, by the application itself. Each
-// time its vertices get the colours that they had the first time, and the application finds those that it has
-// set.
+// A run of slices is drawn several times: for inspection, for comparison, and by the application itself. Each
+// time its vertices must get the colours of the first time, and afterwards the application must find the
+// colours that it set.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -18,8 +18,8 @@ constexpr int slices = 40;
 constexpr std::array<GLfloat, 4> first_colour{0.9F, 0.8F, 0.7F, 0.6F};
 constexpr std::array<GLfloat, 4> last_colour{1, 0.1F, 0, 0.2F};
 
-/// Four corners of slice `i`: three numbers of the coordinate, three of the place. The last slice is moved by
-/// `stray`.
+/// Four corners of slice `i`: three texture coordinates and three position coordinates each. The last slice is
+/// moved by `stray`.
 std::array<std::array<GLfloat, 6>, 4> corners(int i, float stray) {
   std::array<std::array<GLfloat, 6>, 4> all{};
   const float z = (float(i) + 0.5F) / slices + (i + 1 == slices ? stray : 0);
@@ -40,7 +40,7 @@ void draw_singly(GlApplication& app, int i, float stray) {
   app.gl().End();
 }
 
-/// From an array of the application's that is filled anew for every slice.
+/// From an application array that is refilled for every slice.
 void draw_from_memory(GlApplication& app, int i, float stray) {
   static std::array<std::array<GLfloat, 6>, 4> memory;
   memory = corners(i, stray);
@@ -67,7 +67,7 @@ class CurrentAttributes : public ::testing::TestWithParam<Way> {
     app_->gl().TexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_MODULATE);
   }
 
-  /// The slices get the first colour, and the last one is set while their run is still open.
+  /// The slices get the first colour; the last colour is set while their run is still open.
   std::vector<float> frame(bool under, float stray = 0) {
     app_->use_chain(under);
     app_->gl().Viewport(0, 0, GlApplication::size, GlApplication::size);
@@ -93,7 +93,7 @@ class CurrentAttributes : public ::testing::TestWithParam<Way> {
 };
 
 TEST_P(CurrentAttributes, AreThoseOfTheFirstTimeWhereTheApplicationDrawsInTheEnd) {
-  constexpr float stray = 0.01F;  // so that the slices are looked at, and not substituted
+  constexpr float stray = 0.01F;  // so that the slices are inspected, but not substituted
   const auto bare = frame(false, stray);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(frame(true, stray), bare) << "frame " << i;
   EXPECT_EQ(app_->substituted(), 0U);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray casters whose volume is cut: by cropping, by clipping planes, by the near plane around an eye that is
-// inside; and those that add their samples up.
+// Ray casters whose volume is cut: by cropping, by clipping planes, or by the near plane around an eye inside
+// the volume. Also ray casters that sum up their samples.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +17,8 @@ namespace {
 using CutComposition = MarchStyle::Composition;
 
 constexpr double alike = 45;         // dB
-constexpr double another = 35;       // dB; below, an image is another one
-constexpr double another_grey = 46;  // dB; of means, which are dark
+constexpr double another = 35;       // dB; below it, the image is a different one
+constexpr double another_grey = 46;  // dB; for means, which are dark
 constexpr std::uint32_t middle_region = 1U << 13U;
 
 struct CutScene : RayCasterScene {
@@ -150,7 +150,8 @@ TEST(CutProxies, MeansAreThoseOfTheApplication) {
       if (divided) continue;
       scene.caster.style.cropping_planes = planes;
       scene.caster.style.kept_regions = 1U << 13U;
-      // A sample more or less, where the ray just meets a plane, is much of the mean of a few.
+      // Where the ray barely touches a plane, one sample more or less changes the mean of a few samples
+      // considerably.
       scene.expect_alike(25, what + ", cropped", 40);
     }
   }
@@ -166,7 +167,7 @@ TEST(CutProxies, TheEyeGoesInsideAndOutAgain) {
     for (const double distance : {0.6, 0.3, 0.0}) {
       scene.caster.style.distance = distance;
       for (const double angle : {25.0, 70.0, 200.0}) {
-        // What verification does not accept is left, as long as the eye is inside.
+        // While the eye is inside, images that fail verification may be drawn by the application instead.
         const auto before = scene.app->substituted();
         const auto under = scene.frame(true, angle);
         const double likeness = psnr(under, scene.frame(false, angle));
@@ -200,7 +201,7 @@ TEST(CutProxies, TheEyeIsInsideFromTheFirstFrameOn) {
   }
 }
 
-/// The part that a point lies in.
+/// Index of the part that contains the point, or -1.
 int part_at(const std::vector<std::vector<volume::HalfSpace>>& parts, const volume::Vec3& p) {
   int found = -1;
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -230,7 +231,7 @@ TEST(CroppedParts, HoldWhatIsKeptNearestFirst) {
         const int part = part_at(parts, p);
         EXPECT_EQ(part >= 0, kept[region]);
         if (part < 0) continue;
-        // On the way to the eye no later part is met.
+        // No later part may lie between the point and the eye.
         for (int step = 0; step < 20; ++step) {
           const double s = step / 20.0;
           volume::Vec3 q{};
@@ -249,7 +250,7 @@ TEST(CroppedParts, HoldWhatIsKeptNearestFirst) {
 }
 
 ObservedPolygons cut_cube(bool closed) {
-  // x + y + z >= 1/2 of the unit cube: three faces lose a corner, a triangle closes it.
+  // x + y + z >= 1/2 of the unit cube: three faces lose a corner, and a triangle closes the cut.
   const std::vector<std::vector<volume::Vec3>> faces{
       {{0.5, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0.5, 0}},
       {{0, 0.5, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}, {0, 0, 0.5}},

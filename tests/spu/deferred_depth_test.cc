@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The depth that substituted slices would have written: nobody looks at it where a toolkit switches between
-// framebuffers, and it is there for whoever does.
+// Depth that substituted slices would have written: it is not drawn if a toolkit merely switches framebuffers,
+// but it is available to every reader.
 #include "spu/volume/observation/deferred_depth.h"
 
 #include <gmock/gmock.h>
@@ -59,7 +59,7 @@ TEST(DeferredDepth, IsWatchedInSoManyFramebuffersAndNoMore) {
   EXPECT_THAT(depth.add({.framebuffer = 99, .volume = 99}), ElementsAre(10)) << "the oldest";
 }
 
-/// Two framebuffer objects, as a toolkit has them; the depth of the first in a renderbuffer or in a texture.
+/// Two framebuffer objects, as a toolkit has them; the depth of the first is a renderbuffer or a texture.
 class Framebuffers {
  public:
   Framebuffers(const DispatchTable& gl, bool depth_in_texture) {
@@ -105,7 +105,7 @@ class DeferredDepthOfFrames : public ::testing::Test {
     app_->use_chain(true);
   }
 
-  // The table changes with the phase of the stream, so every call asks for it.
+  // The dispatch table changes with the phase of the stream, so it is fetched for every call.
   const DispatchTable& gl() const { return app_->gl(); }
 
   void draw_volume(const Framebuffers& framebuffers) {
@@ -115,7 +115,7 @@ class DeferredDepthOfFrames : public ::testing::Test {
     scene_.draw(*app_, 25);
   }
 
-  /// Of what lies in the volume's framebuffer, read past Understudy; then the frame ends.
+  /// Smallest depth in the volume's framebuffer, read bypassing Understudy; then ends the frame.
   float smallest_depth(const Framebuffers& framebuffers) {
     std::vector<float> depth(std::size_t(GlApplication::size) * GlApplication::size);
     const DispatchTable& driver = app_->driver();
@@ -129,7 +129,7 @@ class DeferredDepthOfFrames : public ::testing::Test {
     return *std::min_element(depth.begin(), depth.end());
   }
 
-  /// A frame that ends with another framebuffer bound.
+  /// Draws a frame that ends with another framebuffer bound.
   float smallest_depth_after_frame(const Framebuffers& framebuffers) {
     draw_volume(framebuffers);
     gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
@@ -162,7 +162,7 @@ TEST_F(DeferredDepthOfFrames, IsDrawnIntoATextureThatMayBeSampled) {
 TEST_F(DeferredDepthOfFrames, IsThereFromTheSecondLookOnInAFramebufferThatIsBoundAgain) {
   const Framebuffers framebuffers(app_->gl(), /*depth_in_texture=*/false);
   for (int frame = 1; frame <= 2; ++frame) smallest_depth_after_frame(framebuffers);
-  // Into the volume's framebuffer, with a depth test and without a clear.
+  // Draws into the volume's framebuffer with a depth test and without a clear.
   app_->gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
   app_->gl().Enable(GL_DEPTH_TEST);
   app_->gl().Begin(GL_TRIANGLES);

@@ -16,7 +16,7 @@ Matrix translation(double x, double y, double z) {
   return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1};
 }
 
-/// As glRotate about (0.2, 1, 0.1).
+/// Like glRotate about (0.2, 1, 0.1).
 Matrix rotation(double degrees) {
   std::array<double, 3> axis = {0.2, 1, 0.1};
   const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
@@ -75,7 +75,7 @@ emulation::Volume cube(double angle, bool front_to_back) {
   return volume;
 }
 
-/// The first `channels` of each pixel, top row first.
+/// The first `channels` channels of each pixel, top row first.
 std::vector<double> top_down(const std::vector<float>& pixels, int channels) {
   constexpr std::size_t edge = GlApplication::size;
   std::vector<double> result;

@@ -28,7 +28,7 @@ Matrix4 looking(double x, double y, double z) {
   return {c, 0, s, x, s * 0.3, 0.95, -c * 0.3, y, -s, 0.3, c, z, 0, 0, 0, 1};
 }
 
-/// Slices as a viewer draws them: quads at equal distances through the unit cube.
+/// Slices as a viewer draws them: equidistant quads through the unit cube.
 std::vector<ObservedVertex> quads_under(const Matrix4& a, int slices, double rounding = 0, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> noise(-rounding, rounding);
@@ -79,7 +79,7 @@ TEST(CameraFit, FloatRoundingStaysFarBelowTheTolerance) {
 }
 
 TEST(CameraFit, AWorldOffsetOf1e7KeepsTheUnitVolume) {
-  // Clip positions are what the pipeline computed in float; the offset has cancelled in them already.
+  // Clip positions are the pipeline's float results, in which the offset has already cancelled.
   Matrix4 a = looking(-1e7, 1e7, -5);
   const auto fit = fit_camera(quads_under(a, 100));
   ASSERT_TRUE(fit);

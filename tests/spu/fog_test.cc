@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fog: measured from colours, recognised under a real driver, and told from what only looks like it.
+// Fog: measured from colours, recognised above a real driver, and distinguished from effects that resemble it.
 #include "spu/volume/classification/fog.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 using volume::Rgba;
 
-/// 64 entries of all colours; the first ones are clear.
+/// 64 entries with various colours; the first ones are clear.
 std::vector<Rgba> some_table() {
   std::vector<Rgba> table;
   for (int i = 0; i < 64; ++i) {
@@ -34,7 +34,7 @@ std::vector<float> some_numbers() {
   return numbers;
 }
 
-/// What a shader with fog of density `density` behind 3 would give.
+/// Colour that a shader produces with fog of density `density` beyond 3.
 Rgba behind_fog(Rgba colour, float number, float density) {
   const float weight = std::exp(-density * std::max(number - 3, 0.0F));
   const Rgba haze{0.2F, 0.4F, 0.9F, 0};
@@ -91,7 +91,7 @@ TEST(MeasureFog, IsNoneWhereColoursTurnIntoOneAnother) {
   }));
 }
 
-/// Fog may thin out to more than nothing where no sample is: clamped colours are not to be explained there.
+/// Outside the sampled range, fog need not explain clamped colours: the measured range ends there.
 TEST(MeasureFog, EndsWhereColoursAreClampedAndNoneIsNeeded) {
   const auto table = some_table();
   const auto numbers = some_numbers();
@@ -191,7 +191,7 @@ TEST(Fog, ThatHidesTheVolumeIsLeft) {
   if (!app) GTEST_SKIP() << "no EGL context here; install libegl1 and libgl1-mesa-dri";
   const SliceScene scene = vertex_shader_varying();
   scene.set_up(*app);
-  // The varying named gain fades opacity with the place: no fog.
+  // The varying named gain attenuates opacity by position: this is not fog.
   const char* source =
       "#version 120\n"
       "uniform mat4 camera; attribute vec3 corner; varying vec3 place; varying float gain;\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options, variables and units under the names that they had before: they must do what they do under today's.
+// Options, variables and units under their former names: they must have the same effect as the current names.
 #include "spu/former_names.h"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ namespace {
 using ::testing::ElementsAre;
 using Words = std::vector<std::string>;
 
-/// A variable that is set for one test.
+/// An environment variable that is set for one test.
 class Variable {
  public:
   Variable(const char* name, const char* value) : name_(name) { setenv(name, value, 1); }

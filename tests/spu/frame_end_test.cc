@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// By whatever command someone looks at the framebuffer, the volume's image is there already.
+// Whichever command accesses the framebuffer, the volume's image is already there.
 //
-// A run of slices is kept back until something could see its result. Each command here is the first
-// call after the slices; what it shows is then read past the chain, so that nothing but this call can have
-// ended the run.
+// A run of slices is held back until something could see its result. Each command here is the first call after
+// the slices. Its effect is read bypassing the chain, so that only this call can have ended the run.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,11 +21,11 @@ using Image = std::vector<float>;
 
 constexpr int size = GlApplication::size;
 constexpr int middle = size / 2;
-constexpr double alike = 40;      ///< dB, between the application's own image and ours
-constexpr double different = 30;  ///< what an image without the volume must not reach
+constexpr double alike = 40;      ///< dB, between the application's own image and Understudy's
+constexpr double different = 30;  ///< dB, that an image without the volume must not reach
 
-/// What an application has beside its window: two framebuffers with a texture each, textures of one and of
-/// three dimensions, and a buffer. All are made before the slices, so that a look is one call.
+/// Objects that an application has beside its window: two framebuffers with a texture each, textures of one and
+/// of three dimensions, and a buffer. All are made before the slices, so that each command is a single call.
 struct Targets {
   std::array<GLuint, 2> framebuffer{};
   std::array<GLuint, 2> texture{};
@@ -97,11 +96,11 @@ enum class Into { window, texture };
 struct Command {
   const char* name;
   Into into;  ///< where the slices are drawn
-  /// Lets the framebuffer be seen, and answers with what is seen.
+  /// Makes the command, and returns the image that it shows.
   std::function<Image(GlApplication&, const Targets&)> look;
 };
 
-/// Made past the chain: making it would end the run.
+/// Made bypassing the chain: making it through the chain would end the run.
 GLuint query(GlApplication& app) {
   GLuint name = 0;
   app.driver().GenQueries(1, &name);
@@ -142,7 +141,8 @@ std::vector<Command> ends_and_waits() {
        }},
       {"glClientWaitSync", Into::window,
        [](GlApplication& app, const Targets&) {
-         // For a fence from before the slices: the call means no more than that someone looks around.
+         // Made bypassing the chain, like a fence from before the slices: the wait only indicates that the
+         // application synchronises.
          const GLsync fence = app.driver().FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
          app.gl().ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, GL_TIMEOUT_IGNORED);
          app.driver().DeleteSync(fence);
@@ -229,7 +229,7 @@ std::vector<Command> reads_and_copies() {
        }},
       {"glCopyPixels", Into::window,
        [](GlApplication& app, const Targets&) {
-         // The raster position has never been set: the window's corner.
+         // The raster position was never set, so it is the window's corner.
          app.gl().CopyPixels(middle, 0, middle, size, GL_COLOR);
          return window(app);
        }},
@@ -379,7 +379,7 @@ std::vector<Command> looks_at_an_attachment() {
   };
 }
 
-/// Clears, draws the volume or nothing up to the last slice, and looks.
+/// Clears, draws up to the last slice (or no volume), and makes the command.
 Image frame(GlApplication& app, const SliceScene& scene, const Command& command, bool volume = true) {
   const Targets targets = make_targets(app.gl());
   if (command.into == Into::texture) app.gl().BindFramebuffer(GL_FRAMEBUFFER, targets.framebuffer[0]);
@@ -432,8 +432,8 @@ INSTANTIATE_TEST_SUITE_P(Reads, Commands, ::testing::ValuesIn(reads_and_copies()
 INSTANTIATE_TEST_SUITE_P(Changes, Commands, ::testing::ValuesIn(changes_of_the_framebuffer()), name_of_command);
 INSTANTIATE_TEST_SUITE_P(Attachments, Commands, ::testing::ValuesIn(looks_at_an_attachment()), name_of_command);
 
-/// The commands above stand for all: while a run is open, no command but those that add to it goes
-/// past.
+/// The commands above are representative: while a run is open, every command that does not add to it is
+/// intercepted.
 TEST(OpenRun, IsClosedByEveryCallThatAddsNothing) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
@@ -445,7 +445,7 @@ TEST(OpenRun, IsClosedByEveryCallThatAddsNothing) {
   }
 }
 
-/// What the slices were drawn with may go, or change, at once.
+/// The objects that the slices were drawn with may be deleted or changed immediately afterwards.
 struct Loss {
   const char* name;
   SliceScene (*scene)();
@@ -460,7 +460,7 @@ GLuint bound(const DispatchTable& driver, GLenum binding) {
 
 class Losses : public ::testing::TestWithParam<Loss> {
  protected:
-  /// In an application of its own, since it is not the same afterwards.
+  /// In a separate application, since the loss changes it.
   static Image lost_after_the_slices(bool under) {
     auto app = GlApplication::start(GetParam().scene().profile);
     if (!app) return {};
@@ -564,8 +564,8 @@ TEST(OtherThreads, SeeInASharedTextureWhatWasDrawnBeforeTheFence) {
   }
 }
 
-/// As the first call after the slices, in every frame: the first frame has the depth because it is the first,
-/// the others because somebody was seen looking.
+/// The read is the first call after the slices in every frame. The first frame draws the depth because it is
+/// the first; later frames draw it because a read was seen before.
 TEST(Depth, IsThereForAReadRightAfterTheSlices) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
@@ -589,7 +589,7 @@ TEST(Depth, IsThereForAReadRightAfterTheSlices) {
   }
 }
 
-/// Queries that count what is drawn would count our drawing instead: such slices are the application's.
+/// Queries that count drawing would count Understudy's, so such slices are not substituted.
 TEST(Queries, AroundTheSlicesCountTheApplicationsOwn) {
   for (const GLenum target :
        {GL_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED_CONSERVATIVE, GL_PRIMITIVES_GENERATED,

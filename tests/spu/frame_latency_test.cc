@@ -17,7 +17,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Images of one pixel that tell the request's camera and its volume's version; slow ones on demand.
+/// Returns images of one pixel that encode the request's camera and the volume's version; waits on demand.
 class Cameras final : public compositor::RenderService {
  public:
   void begin_volume(const volume::VolumeDescription&) override {}
@@ -57,7 +57,7 @@ class FrameLatencyTest : public ::testing::Test {
     service_ = std::make_unique<FrameLatency>(std::move(cameras));
   }
 
-  /// The camera that the answer shows.
+  /// The camera of the image that is returned for `camera`.
   float seen_from(double camera) {
     volume::RenderRequest request;
     request.version = version_;

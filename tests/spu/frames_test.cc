@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What belongs to a frame: whoever draws, whoever swaps, and however often the same is drawn.
+// Accounting of frames, whichever context draws or swaps, and however often the same is drawn.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -58,7 +58,7 @@ TEST(FrameLedger, KeepsWhatAContextDrewThatIsGone) {
   EXPECT_LT(ledger.close(&two).error_rms, 0) << "not measured";
 }
 
-/// Qt's way: slices into a framebuffer object in one context, the swap in another one.
+/// As in Qt: slices into a framebuffer object in one context, the swap in another.
 TEST(Frames, AreCountedAsSubstitutedWhereAnotherContextEndsThem) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here; install libegl1 and libgl1-mesa-dri";

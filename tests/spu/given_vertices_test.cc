@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run drawn in feedback mode from memory: to the last bit what the run's own calls give.
+// A run that is drawn in feedback mode from memory gives exactly what the run's own calls give.
 #include "spu/volume/geometry/given_vertices.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ void append_polygons(Run& run, GLenum mode) {
   ++run.draws;
 }
 
-/// Every one has corners on all sides outside the view.
+/// Every quad has corners outside all sides of the view.
 void append_quads_across_the_view(Run& run) {
   Records& calls = run.calls();
   append_call(calls, &DispatchTable::Begin, GL_QUADS);
@@ -116,7 +116,7 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
-/// What feedback tells of the run, from memory or by its own calls.
+/// Feedback of the run, drawn from memory or by its own calls.
 ObservedPolygons observed(const GlContext& context, const Case& tried, bool from_memory) {
   Records calls;
   Pipeline pipeline;

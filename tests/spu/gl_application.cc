@@ -17,7 +17,7 @@
 #include "spu/volume/session/render_session.h"
 
 #if defined(__SANITIZE_ADDRESS__)
-/// What Mesa keeps until the process ends is not ours to free.
+/// Suppresses leak reports for memory that Mesa keeps until the process ends.
 extern "C" [[gnu::visibility("default")]] const char* __lsan_default_suppressions();
 const char* __lsan_default_suppressions() {
   return "leak:_dri.so\nleak:libEGL_mesa\nleak:libLLVM\n";
@@ -59,7 +59,7 @@ std::span<VolumeCounters> volumes() {
   return process_counters().volume;
 }
 
-/// Of all volumes so far.
+/// Sums over all volumes so far.
 struct Sums {
   std::uint64_t substituted = 0;
   std::uint64_t left = 0;
@@ -78,7 +78,7 @@ Sums sums() {
   return all;
 }
 
-/// A context of the driver, on a surface of its own.
+/// A context of the driver with its own surface.
 struct EglContext {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
@@ -94,7 +94,7 @@ struct EglContext {
   }
 };
 
-/// Null when there is none, or it cannot be made current. Objects are shared with `companion`'s.
+/// Null if there is no such context, or it cannot be made current. Shares objects with `companion`.
 std::unique_ptr<EglContext> make_current_context(Profile profile, EGLContext companion) {
   constexpr int size = GlApplication::size;
   auto egl = std::make_unique<EglContext>();
@@ -153,7 +153,7 @@ std::unique_ptr<GlApplication> GlApplication::start(Profile profile) {
 
 std::unique_ptr<GlApplication> GlApplication::start(Profile profile, const Options& options) {
   Options without_guard = options;
-  // Whether the machine is fast enough is not what is tested.
+  // These tests do not measure speed.
   without_guard.speed_guard = false;
   return start(profile, std::make_shared<RenderSession>(std::move(without_guard)), nullptr);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An OpenGL application inside the test: a real driver's context (EGL, no window), and a chain above it exactly
-// as the body would set it up. `gl()` is what the application's calls go through.
+// An OpenGL application inside the test: a real driver's context (EGL, no window), and above it a chain that is
+// set up as by the core library. `gl()` is the table that the application calls.
 #pragma once
 
 #include <cstdint>
@@ -20,14 +20,15 @@ namespace understudy::spu::testing {
 
 enum class Profile { compatibility, core };
 
-/// Null when this machine has no EGL that gives such a context.
+/// start() returns null if EGL provides no such context on this machine.
 class GlApplication {
  public:
-  static constexpr int size = 96;  ///< of the framebuffer, both ways
+  static constexpr int size = 96;  ///< width and height of the framebuffer
 
   static std::unique_ptr<GlApplication> start(Profile profile);
   static std::unique_ptr<GlApplication> start(Profile profile, const Options& options);
-  /// A second context that shares its objects, current on the calling thread, where no other may be.
+  /// A second context that shares objects with this one; becomes current on the calling thread, which must have
+  /// none.
   std::unique_ptr<GlApplication> start_companion() const;
   ~GlApplication();
   GlApplication(const GlApplication&) = delete;
@@ -35,13 +36,13 @@ class GlApplication {
 
   /// Through the chain.
   const DispatchTable& gl() const;
-  /// Past the chain: what the same calls do without Understudy.
+  /// Bypassing the chain: the same calls without Understudy.
   const DispatchTable& driver() const;
 
-  /// What all its contexts speak to the render service through.
+  /// The render session that all its contexts use.
   RenderSession& session() const;
 
-  /// With false the application talks to the driver: the bare run.
+  /// False: the application calls the driver directly (bare run).
   void use_chain(bool on);
 
   /// As the entry library does around glXSwapBuffers.
@@ -55,17 +56,17 @@ class GlApplication {
   std::uint64_t substituted() const;
   std::uint64_t left() const;
   std::string last_reason() const;
-  /// Bytes of texels since this application started, and what was left out of them.
+  /// Bytes of texels since this application started, and how many of them were skipped.
   std::uint64_t texel_bytes_sent() const;
   std::uint64_t texel_bytes_left_out() const;
-  /// How often the driver was asked for glDrawArrays, by the chain or the application, since this process
+  /// How often the driver's glDrawArrays was called, by the chain or the application, since this process
   /// started.
   static std::uint64_t draws_of_arrays();
-  /// The figures of the last volume that this process has seen.
+  /// Counters of the last volume of this process.
   static const VolumeCounters& last_volume();
 
  private:
-  /// Its context of the driver, and what stands above.
+  /// The driver's context, and what is built above it.
   struct Parts;
   explicit GlApplication(std::unique_ptr<Parts> parts);
   static std::unique_ptr<GlApplication> start(Profile profile, std::shared_ptr<RenderSession> session,
@@ -74,7 +75,7 @@ class GlApplication {
   std::unique_ptr<Parts> parts_;
 };
 
-/// A smooth blob with a hole, 8 bits, non-cubic.
+/// A smooth 8-bit blob with a hole, not cubic.
 struct Blob {
   int x = 24, y = 20, z = 17;
   std::vector<std::uint8_t> texels() const;

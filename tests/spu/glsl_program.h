@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A GLSL program as the tests' applications make them.
+// Makes a GLSL program as the tests' applications do.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 
 namespace understudy::spu::testing {
 
-/// Linked, with attribute "corner" at `corner`. Null instead of `vertex`: the vertex stage stays fixed
-/// function.
+/// Returns a linked program with attribute "corner" at location `corner`. If `vertex` is null, the vertex stage
+/// is fixed function.
 inline GLuint glsl_program(const DispatchTable& gl, const char* vertex, const char* fragment,
                            GLuint corner = 0) {
   const GLuint name = gl.CreateProgram();

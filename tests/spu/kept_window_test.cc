@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray casters that discard fragments by their place in the window: the first image is right already, wherever
-// the volume is seen, and no comparison has to be lost for it.
+// Ray casters that discard fragments by window position: the first image is already correct wherever the volume
+// appears, without a failed comparison.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Refusals of a volume: said once, with evidence and advice for whoever asks, and over with it.
+// Refusals of a volume: reported once, with evidence and advice on request, and dropped together with the
+// volume.
 #include "spu/volume/known_volumes/known_volumes.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,7 @@
 namespace understudy::spu::testing {
 namespace {
 
-/// What is said on stderr when the same refusal comes twice.
+/// What is written to stderr when the same refusal occurs twice.
 std::string said_of(const Refusal& refusal, bool explain) {
   MockDriver driver;
   GlContext context;

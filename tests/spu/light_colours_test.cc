@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The colours of a light, from what three values of several colours show at many angles.
+// The colours of a light, derived from how three values of different colours look at many angles.
 #include "spu/volume/proxy/light_colours.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ const std::vector<Tint> told_apart{{0.25, 0.05, 0.12}, {0.05, 0.22, 0.2}, {0.15,
 const std::vector<Tint> greys{{0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}};
 
 struct Illumination {
-  Tint ambient{1, 1, 1};  ///< in parts of the base colours
+  Tint ambient{1, 1, 1};  ///< factor of the base colours
   Tint diffuse{4, 4, 4};
   Tint highlight{0.3, 0.3, 0.3};
 
@@ -41,7 +41,7 @@ volume::Light white() {
   return light;
 }
 
-/// The channel that is off most, of a light with these colours whose response is fitted at each angle.
+/// Worst channel error of a light with these colours whose response is fitted at each angle.
 double worst_of(const volume::Light& light, const Illumination& illumination, const std::vector<Tint>& base) {
   double worst = 0;
   for (const auto& lit : seen_of(illumination, base))

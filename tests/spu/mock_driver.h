@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A driver without a driver: every command of the table is there, notes its call and answers what it was told
-// to.
+// A mock driver: every command of the table exists, records its call and returns a preset value.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +16,7 @@ struct MockCall {
   bool operator==(const MockCall&) const = default;
 };
 
-/// One at a time: its functions find it by being the last one that was made.
+/// At most one at a time: its functions use the instance that was made last.
 class MockDriver {
  public:
   MockDriver();
@@ -26,19 +25,19 @@ class MockDriver {
   MockDriver& operator=(const MockDriver&) = delete;
 
   const DispatchTable& table() const { return table_; }
-  /// For what a table of words cannot do, such as writing through a pointer.
+  /// For functions that preset values cannot express, such as writing through a pointer.
   DispatchTable& slots() { return table_; }
 
   void lacks(CallId call) { set_slot(table_, call, nullptr); }
   void answers(CallId call, std::uint64_t result) { results_[call] = result; }
 
   const std::vector<MockCall>& calls() const { return calls_; }
-  /// The numbers of the calls alone.
+  /// Only the ids of the calls.
   std::vector<CallId> called() const;
   std::size_t count(CallId call) const;
   void forget() { calls_.clear(); }
 
-  /// Counts instead of noting: then a call allocates no memory.
+  /// Counts calls instead of recording them, so that a call allocates no memory.
   void only_count() { only_count_ = true; }
   std::uint64_t counted() const { return counted_; }
 
@@ -53,7 +52,7 @@ class MockDriver {
   MockDriver* before_;
 };
 
-/// A switch_table for chains in tests: what is installed is what the application calls.
+/// A switch_table for the chains of tests: installed() is the table that the application calls.
 const DispatchTable& installed();
 void install(const DispatchTable* table);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slices that are drawn many by one call, by indices with a base, or as instances: what viewers do whose slices
-// are polygons of three to six corners in one buffer, or copies of one.
+// Many slices per call, indices with a base vertex, or instances: as viewers draw whose slices are polygons of
+// three to six corners in one buffer, or copies of one polygon.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,21 +14,21 @@
 namespace understudy::spu::testing {
 namespace {
 
-constexpr int slices = 40;  // as the vertex shader says
-constexpr int corners = 4;  ///< of a slice
+constexpr int slices = 40;  // as in the vertex shader
+constexpr int corners = 4;  ///< per slice
 
-/// What all slices' calls are made from: in buffers, or in the application's memory.
+/// Arguments for drawing all slices, in buffers or in the application's memory.
 struct SliceArrays {
   std::vector<GLfloat> places;
   std::vector<GLint> first;
   std::vector<GLsizei> count;
   std::vector<GLushort> indices;      ///< of all slices, one after the other
   std::vector<const void*> own;       ///< where each slice's indices begin
-  std::vector<const void*> of_first;  ///< where the first slice's do, once for each
+  std::vector<const void*> of_first;  ///< where the first slice's indices begin, repeated for each slice
   std::vector<GLuint> commands;       ///< for indirect draws: of arrays, then of elements
   const void* indirect_arrays = nullptr;
   const void* indirect_elements = nullptr;
-  std::vector<GLint> base;  ///< the vertex that they are counted from then
+  std::vector<GLint> base;  ///< base vertices for `of_first`
 };
 
 SliceArrays slice_arrays() {

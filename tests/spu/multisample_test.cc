@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slices into multisampled framebuffers, against the driver's own drawing of them.
+// Slices into multisampled framebuffers, compared with the driver's own drawing.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class Multisampled : public ::testing::Test {
     load_colours(*app_);
   }
 
-  /// One frame of `draw` into a multisampled framebuffer, its samples resolved.
+  /// Draws one frame of `draw` into a multisampled framebuffer and resolves it.
   std::vector<float> frame(GLenum format, bool under, const std::function<void(GlApplication&)>& draw) {
     const ColourTarget target(*app_, format, samples);
     EXPECT_TRUE(target.complete());
@@ -72,7 +72,8 @@ TEST_F(Multisampled, OpaqueGeometryHidesWhatLiesBehindIt) {
   EXPECT_EQ(app_->error(), GLenum(GL_NO_ERROR));
 }
 
-/// The edge of what stands before a ray caster's box crosses pixels: it hides the box in some of their samples.
+/// The edge of an object in front of a ray caster's box crosses pixels, and hides the box in some of their
+/// samples.
 TEST_F(Multisampled, ARayCastersBoxIsHiddenInSomeSamplesOfAPixel) {
   app_.reset();
   app_ = GlApplication::start(Profile::core);

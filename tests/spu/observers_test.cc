@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The units that look at every call, perf and print, above a driver that notes what reaches it.
+// The units that observe every call, perf and print, above a mock driver.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ using testing::MockDriver;
 
 class Observers : public ::testing::Test {
  protected:
-  // A process has one table a file, so every test has files of its own.
+  // A process has one table per file, so every test has files of its own.
   Observers() : folder_(fs::path(::testing::TempDir()) / ("observers-" + name())) {
     fs::create_directories(folder_);
   }
@@ -71,7 +71,7 @@ TEST_F(Observers, HandOnEveryCallWithItsArgumentsAndItsResult) {
             (MockCall{CallId::TexParameteri, {GL_TEXTURE_2D, GL_TEXTURE_BASE_LEVEL, std::uint64_t(-3)}}));
 }
 
-// Every command of the registry, on its way through both.
+// Passes every command of the registry through both units.
 TEST_F(Observers, ChangeNoCall) {
   use("perf(file=" + file("p.txt") + ") print(file=" + file("t.txt") + ", calls=glNone) driver");
   const std::array<std::uint64_t, max_parameters> zeros{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slices that no sound viewer draws, and some do: the application's image bit for bit, or one that cannot be
-// told from it, and no error that the application did not make.
+// Unusual and invalid slices: the image equals the application's bit for bit, or cannot be distinguished from
+// it, and there is no error that the application did not cause.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,11 +21,11 @@ struct OddSlices {
   const char* what;
   int slices = 40;
   int pixels = GlApplication::size;  ///< edge of the viewport
-  /// The texture coordinate at a vertex of slice `i`.
+  /// Texture coordinate at a vertex of slice `i`.
   std::function<Coordinate(int i, Coordinate place)> coordinate = [](int, Coordinate place) { return place; };
-  /// After the camera is set.
+  /// Called after the camera is set.
   std::function<void(const DispatchTable&)> camera = [](const DispatchTable&) {};
-  /// Between two slices, in the middle of all.
+  /// Called between the two slices in the middle.
   std::function<void(const DispatchTable&)> half_way = [](const DispatchTable&) {};
 };
 
@@ -151,7 +151,7 @@ void set_up(GlApplication& app) {
                       colours.data());
 }
 
-/// Two frames of a new application.
+/// The image after two frames of a new application.
 std::vector<float> shown(const OddSlices& odd, bool under, std::uint64_t& substituted) {
   const auto app = GlApplication::start(Profile::compatibility);
   app->use_chain(under);
@@ -191,11 +191,11 @@ TEST(OddSlices, InAContextThatGoesAwayHarmNobody) {
     app->end_frame();
     EXPECT_EQ(app->substituted(), 1U) << scene.name << ": " << app->last_reason();
     scene.draw_to_the_last_slice(*app, 20);
-    // The entry library's word that the context is gone: no call may be made any more.
+    // The entry library reports that the context is gone: no further calls may be made.
     Chain::current()->abandon();
     app.reset();
 
-    // The process lives on, and draws elsewhere.
+    // The process continues and draws in another context.
     app = GlApplication::start(scene.profile);
     scene.set_up(*app);
     scene.draw(*app, 10);

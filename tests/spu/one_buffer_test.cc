@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Some drivers take the name of a back buffer that is not there for the front buffer, others refuse it: none
-// gets to see it. What comes of it on a driver is in tests/replay/osmesa_contexts_test.cc.
+// Some drivers accept the name of a missing back buffer for the front buffer, others refuse it, so the player
+// translates the name. The effect on a driver is tested in tests/replay/osmesa_contexts_test.cc.
 #include "spu/player/one_buffer.h"
 
 #include <gmock/gmock.h>
@@ -55,7 +55,7 @@ TEST_F(OneBufferTest, NamesOfTheBackBufferBecomeThoseOfTheFrontBuffer) {
   EXPECT_THAT(below<1>(gl, {GL_BACK}), ElementsAre(GL_FRONT_LEFT)) << "GL_FRONT is not allowed there";
   EXPECT_THAT(below<2>(gl, {GL_NONE, GL_BACK_LEFT}), ElementsAre(GL_NONE, GL_FRONT_LEFT));
   EXPECT_THAT(below<2>(gl, {GL_BACK, GL_NONE}), ElementsAre(GL_BACK, GL_NONE)) << "an error stays one";
-  // There never was a right one.
+  // A right buffer never existed.
   gl.DrawBuffer(GL_BACK_RIGHT);
   EXPECT_EQ(last(0), GL_BACK_RIGHT);
   gl.DrawBuffer(GL_COLOR_ATTACHMENT0);

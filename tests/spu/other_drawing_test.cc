@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Geometry before, through and after the volume, in perspective and in parallel projection, against the
+// Geometry before, inside and behind the volume, in perspective and parallel projection, compared with the
 // driver's own drawing.
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace understudy::spu::testing {
 namespace {
 
-/// One frame through the chain and one past it, and one without the geometry that is being tested.
+/// One frame through the chain, one bypassing it, and one without the geometry under test.
 struct Frames {
   std::vector<float> under;
   std::vector<float> bare;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binaries of programs: those of another run are refused, those of this one keep their sources.
+// Program binaries: those of another run are refused; those of this run keep their sources.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -62,7 +62,7 @@ TEST_F(ProgramBinaries, OfAnotherRunAreRefusedAndSourcesCompiledInstead) {
   const GLuint other = gl().CreateProgram();
   EXPECT_FALSE(loads(gl(), other, binary));
   EXPECT_EQ(application_->error(), GLenum(GL_NO_ERROR));
-  EXPECT_TRUE(loads(application_->driver(), other, binary));  // the driver would have taken it
+  EXPECT_TRUE(loads(application_->driver(), other, binary));  // the driver would have accepted it
   glsl_program(gl(), vertex, fragment);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray casters in a fragment shader, recognised by what they draw: the same image, or the application's own.
+// Ray casters in a fragment shader, recognised by what they draw: the image is the same, or the application's
+// own.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -207,7 +208,7 @@ TEST(Proxies, OpacitiesAtWhichRaysEndAreMeasured) {
   for (const float limit : {0.95F, 0.8F, 0.6F}) {
     RayCasterScene scene(MarchStyle{.ends_at = limit});
     ASSERT_NE(scene.app, nullptr) << "no EGL context here";
-    // Nearly opaque samples, behind which much would be left to see.
+    // Almost opaque samples, behind which much more would be visible.
     scene.caster.set_table(*scene.app, 0.3F);
     for (const double angle : {20.0, 65.0}) scene.expect_alike(angle, std::to_string(limit), 45);
   }
@@ -297,8 +298,8 @@ TEST(Proxies, NoiseAtTheBeginningOfRaysIsThatOfTheApplication) {
   }
 }
 
-/// As while somebody turns a volume in ParaView, whose steps are ten texels long then: at the silhouette of the
-/// box, rays are shorter in many pixels.
+/// As while a volume is rotated in ParaView, with steps of ten texels: near the box's silhouette the rays of
+/// many pixels are shorter than a step.
 TEST(Proxies, ShortRaysHaveASampleWhereTheProgramTakesOne) {
   for (const bool divided : {false, true}) {
     std::vector<std::vector<float>> images;
@@ -338,7 +339,7 @@ TEST(Proxies, NoiseIsReadThroughItsSamplerObject) {
 TEST(Proxies, RaysEndAtOpaqueGeometryWhoseDepthTheyRead) {
   RayCasterScene scene(MarchStyle{.reads_depth = true});
   if (!scene.app) GTEST_SKIP() << "no EGL context here";
-  constexpr float through_the_middle = 0.877F;  // three away, between 0.5 and 10
+  constexpr float through_the_middle = 0.877F;  // at distance 3, between planes at 0.5 and 10
   for (const double angle : {25.0, 60.0}) {
     const auto under = scene.frame(true, angle, through_the_middle);
     const auto bare = scene.frame(false, angle, through_the_middle);
@@ -350,10 +351,10 @@ TEST(Proxies, RaysEndAtOpaqueGeometryWhoseDepthTheyRead) {
 }
 
 TEST(Proxies, AreNotMeasuredAgainWhenOpaqueGeometryMoves) {
-  // Its depth is copied into a texture in every frame.
+  // The wall's depth is copied into a texture in every frame.
   RayCasterScene scene(MarchStyle{.reads_depth = true});
   if (!scene.app) GTEST_SKIP() << "no EGL context here";
-  constexpr std::uint64_t draws_to_check = 100;  // a table takes a thousand
+  constexpr std::uint64_t draws_to_check = 100;  // measuring a transfer function takes a thousand
   scene.frame(true, 25, 0.9F);
   for (const float wall : {0.88F, 0.87F, 0.86F, 0.85F}) {
     const std::uint64_t before = GlApplication::draws_of_arrays();
@@ -363,7 +364,7 @@ TEST(Proxies, AreNotMeasuredAgainWhenOpaqueGeometryMoves) {
   EXPECT_EQ(scene.app->substituted(), 5U) << scene.app->last_reason();
 }
 
-/// A table of few entries, whose corners lie between the values that are measured.
+/// A table with few entries whose kinks lie between the measured values.
 void upload_coarse_table(GlApplication& app) {
   constexpr int entries = 16;
   std::vector<float> table;
@@ -377,7 +378,7 @@ void upload_coarse_table(GlApplication& app) {
 TEST(Proxies, AreNotMeasuredAgainWhereTwoTablesTakeTurns) {
   RayCasterScene scene(MarchStyle{});
   ASSERT_NE(scene.app, nullptr) << "no EGL context here";
-  constexpr std::uint64_t draws_to_check = 300;  // a table takes a thousand
+  constexpr std::uint64_t draws_to_check = 300;  // measuring a transfer function takes a thousand
   scene.app->use_chain(true);
   const DispatchTable& gl = scene.app->gl();
   gl.ActiveTexture(GL_TEXTURE1);
@@ -417,7 +418,7 @@ TEST(Proxies, RaysThatDoNotEndAtGeometryInTheBoxAreLeft) {
       const auto under = scene.frame(true, 25, wall);
       EXPECT_GE(psnr(under, scene.frame(false, 25, wall)), 38) << "wall at " << wall;
     }
-    // Without blending the box is tested as the application's is.
+    // Without blending, the box is depth-tested like the application's.
     EXPECT_EQ(scene.app->substituted(), replaces ? 4U : 3U) << scene.app->last_reason();
   }
 }
@@ -473,7 +474,7 @@ TEST(TableContents, TellACorrectedTableFromAnEditedOne) {
       << "of which nothing is known";
 }
 
-/// What rays of so many samples, each of opacity `alpha`, differ from the background by.
+/// Differences from the background of rays with `samples` samples, each of opacity `alpha`.
 std::vector<volume::Vec3> differences(const volume::Vec3& contrast, double alpha,
                                       const std::vector<double>& samples) {
   std::vector<volume::Vec3> all;
@@ -490,7 +491,7 @@ TEST(BackgroundRemoval, TellsTheOpacityOfSamplesFromColours) {
   for (const double alpha : {1.0, 0.999, 0.7, 0.2, 0.03, 0.004, 0.0005}) {
     for (const volume::Vec3 full : {volume::Vec3{0.9, 0.1, -0.4}, volume::Vec3{-0.01, 0.02, 0.005}}) {
       const BackgroundContrast contrast = contrast_of(samples, differences(full, alpha, samples));
-      // What a ray of 20 samples hides: by its opacity, and that by the contrast.
+      // The opacity of a ray of 20 samples, computed from alpha and from the contrast.
       const auto of_twenty = differences(full, alpha, {20});
       EXPECT_NEAR(opacity_of(contrast, of_twenty.front()), 1 - std::pow(1 - alpha, 20),
                   0.002 + 3e-6 / (alpha * volume::length(full)))
@@ -502,7 +503,7 @@ TEST(BackgroundRemoval, TellsTheOpacityOfSamplesFromColours) {
 TEST(BackgroundRemoval, LeavesOutRaysThatEndEarly) {
   const std::vector<double> samples{1, 2, 3, 6, 14, 40};
   auto seen = differences({0.5, 0.5, -0.2}, 0.3, samples);
-  seen[4] = seen[5] = seen[3];  // programs stop where little light is let through
+  seen[4] = seen[5] = seen[3];  // programs stop when little light is transmitted
   const BackgroundContrast contrast = contrast_of(samples, seen);
   EXPECT_NEAR(contrast.alpha, 0.3, 1e-3);
   EXPECT_NEAR(contrast.full[0], 0.5, 1e-3);
@@ -510,7 +511,7 @@ TEST(BackgroundRemoval, LeavesOutRaysThatEndEarly) {
 
 TEST(BackgroundRemoval, GivesBackWhatWasPutOverTheBackground) {
   const ShaderBackground background{{0.2, 0.9, 0.4}, 1};
-  const volume::Rgba ray{0.3F, 0.1F, 0.05F, 0.4F};  // of samples of the colour (0.75, 0.25, 0.125)
+  const volume::Rgba ray{0.3F, 0.1F, 0.05F, 0.4F};  // of samples with colour (0.75, 0.25, 0.125)
   const BackgroundContrast contrast{{0.75 - 0.2, 0.25 - 0.9, 0.125 - 0.4}, 0.1};
   const volume::Vec3 seen_difference =
       volume::subtract(colour_of(over_background(background, ray)), background.colour);
@@ -522,7 +523,7 @@ TEST(BackgroundRemoval, GivesBackWhatWasPutOverTheBackground) {
 TEST(BackgroundRemoval, TellsTheOpacityOfTwoValues) {
   const BackgroundContrast near{{0.5, -0.2, 0.1}, 0.1};
   const BackgroundContrast far{{-0.1, 0.6, 0.3}, 0.2};
-  // Opacity 0.4 before 0.7.
+  // Opacity 0.4 in front of 0.7.
   const volume::Vec3 seen = volume::add(volume::scale(near.full, 0.4), volume::scale(far.full, 0.6 * 0.7));
   ASSERT_TRUE(opacity_of(near, far, seen).has_value());
   EXPECT_NEAR(*opacity_of(near, far, seen), 1 - 0.6 * 0.3, 1e-12);
@@ -545,7 +546,7 @@ TEST(StepFit, TellsCountsFromOpacities) {
     opacities.push_back(double(float(1 - std::pow(1 - 0.0023, n))));
   }
   EXPECT_EQ(counts_from_opacities(opacities), counts);
-  for (double& a : opacities) a = 0.002 * std::sqrt(a);  // grows, but not as a power
+  for (double& a : opacities) a = 0.002 * std::sqrt(a);  // increasing, but not a power
   EXPECT_TRUE(counts_from_opacities(opacities).empty());
   EXPECT_TRUE(counts_from_opacities(std::vector<double>{0.5, 1.0}).empty()) << "saturated";
 }
@@ -571,7 +572,7 @@ TEST(StepFit, FindsTheMetricAndWhereTheFirstSampleLies) {
       EXPECT_EQ(rule.first, first);
       for (const CountedRay& ray : rays)
         EXPECT_NEAR(steps_of_way(rule, ray.way), steps_of_way(truth, ray.way), 0.2);
-      // Rays that begin anywhere within two steps are another matter.
+      // Rays with random starts within two steps cannot be explained.
       for (CountedRay& ray : rays) ray.samples += std::floor(2 * uniform(random));
       const auto jittered = fit_steps(rays, std::vector{axes_in_texels(texels)});
       ASSERT_EQ(jittered.size(), 1U);
@@ -629,7 +630,7 @@ TEST(StepDensity, IsNoneWhereSamplesLieAnywhere) {
 }
 
 TEST(CountingAhead, TakesAsManySamplesAsTheProgramWherever) {
-  // floor(L), round(L) and ceil(L) samples: the offsets of fits -1/2, 0 and 1/2.
+  // floor(L), round(L) and ceil(L) samples: the fitted offsets -1/2, 0 and 1/2.
   const auto rules = [](double offset) {
     return rules_counting_ahead({{1, 0, 0, 0, 1, 0, 0, 0, 1}, offset, 0});
   };
@@ -664,7 +665,7 @@ TEST(SplitFields, AreSplitWithinTheTextureWhereverTheBoxLies) {
 }
 
 TEST(ProxyBox, IsWholeOrNone) {
-  // A parallel one that looks along (-1, -2, -3).
+  // A parallel camera that looks along (-1, -2, -3).
   const volume::Matrix4 camera{2, -1, 0, 0, 3, 6, -5, 0, -1, -2, -3, 0, 0, 0, 0, 1};
   const auto faces = [](const std::vector<std::size_t>& left_out) {
     ObservedPolygons polygons;

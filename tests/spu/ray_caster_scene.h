@@ -13,12 +13,13 @@ namespace understudy::spu::testing {
 struct RayCasterScene {
   explicit RayCasterScene(const MarchStyle& style);
 
-  /// What it shows, under the chain or not.
+  /// The image with the chain (`under`) or without it.
   std::vector<float> frame(bool under, double angle, float wall = 0);
-  /// Expects it to be substituted, and at least so much like the application's own, in dB; that image.
+  /// Expects it to be substituted with a PSNR of at least `least` dB against the application's image; returns
+  /// the image.
   std::vector<float> expect_alike(double angle, const std::string& what, double least);
 
-  std::unique_ptr<GlApplication> app;  ///< null: there is no context of a core profile here
+  std::unique_ptr<GlApplication> app;  ///< null: no core profile context is available
   BoxRayCaster caster;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Normals of a ray's samples over fields that rise evenly.
+// Normals of a ray's samples in linear fields.
 #include "spu/volume/proxy/ray_normals.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Twenty steps through a cube of unit edges, straight along x.
+/// Twenty steps through a unit cube, along x.
 volume::RaySteps steps_along_x() {
   volume::RaySteps steps;
   steps.metric = {20, 0, 0, 0, 20, 0, 0, 0, 20};
@@ -24,7 +24,7 @@ volume::RaySteps steps_along_x() {
 
 const WayThroughBox along_x{{0, 0.5, 0.5}, {1, 0, 0}};
 
-/// Samples that are all alike.
+/// Samples of equal opacity.
 std::vector<double> of_opacity(double opacity) {
   return std::vector<double>(places_on_way(steps_along_x(), along_x.way).size(), opacity);
 }
@@ -45,7 +45,7 @@ TEST(RayNormals, AreOneWhereNoEndIsWithinReach) {
 
 TEST(RayNormals, TurnNearTheEnds) {
   const LightSpace space(volume::Light{}, along_x.way);
-  // Within a tenth of both ends the rise along x is seen less.
+  // Within a tenth of both ends, differences along x are smaller.
   const auto normals = ray_normals(along_x, steps_along_x(), of_opacity(0.03), space,
                                    {{1, 1, 0}, {1000, 1000, 1000}, {0.1, 0.1, 0.1}});
   ASSERT_GT(normals.size(), 3U);
@@ -58,7 +58,7 @@ TEST(RayNormals, TurnNearTheEnds) {
 
 TEST(RayNormals, AreNoneWhereNothingRises) {
   const LightSpace space(volume::Light{}, along_x.way);
-  // The first sample and its neighbours lie in the half texel at the end.
+  // The first sample and its neighbours lie in the half texel at the end, where the field is constant.
   const auto normals =
       ray_normals(along_x, steps_along_x(), of_opacity(0.03), space, {{1, 0, 0}, {4, 4, 4}, {0.1, 0.1, 0.1}});
   EXPECT_FALSE(normals.front().cosine);
@@ -70,7 +70,7 @@ TEST(RayNormals, CountForAsMuchAsIsSeenOfTheirSamples) {
   const EvenRise field{{1, 1, 0}, {1000, 1000, 1000}, {0.1, 0.1, 0.1}};
   const double thin = ray_normals(along_x, steps_along_x(), of_opacity(0.001), space, field).front().share;
   const double dense = ray_normals(along_x, steps_along_x(), of_opacity(0.5), space, field).front().share;
-  // Of n samples of opacity a, the first counts for a / (1 - (1 - a)^n).
+  // Of n samples with opacity a, the first has the share a / (1 - (1 - a)^n).
   EXPECT_NEAR(thin, 1 / 21.0, 0.001);
   EXPECT_NEAR(dense, 0.5, 1e-6);
 }
@@ -81,7 +81,7 @@ TEST(RayNormals, CountForLessBehindOpaqueSamples) {
   std::vector<double> opacities = of_opacity(0);
   opacities[0] = 0.5;
   opacities[10] = 1;
-  opacities[15] = 1;  // not seen
+  opacities[15] = 1;  // hidden
   const auto normals = ray_normals(along_x, steps_along_x(), opacities, space, field);
   EXPECT_NEAR(normals.front().share, 0.5, 1e-12);
   EXPECT_NEAR(shares(normals), 1, 1e-12);
@@ -102,7 +102,7 @@ TEST(RayNormals, GiveAMeanOfWhatTheLightMakes) {
 TEST(RayNormals, AreShorterWhereAGuardKeepsThemFromADivisionByZero) {
   const LightSpace space(volume::Light{}, along_x.way);
   const EvenRise field{{-2, 0, 0}, {1000, 1000, 1000}, {0.1, 0.1, 0.1}};
-  // Away from the texture's ends, where most samples are.
+  // The sample with the largest share, away from the texture's ends.
   const auto cosine = [&](const volume::NormalGuard& guard) {
     const auto normals = ray_normals(along_x, steps_along_x(), of_opacity(0.03), space, field, guard);
     return std::abs(*std::ranges::max_element(normals, {}, &NormalShare::share)->cosine);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The volume unit above a real driver: recognised, substituted, and the same image.
+// The volume unit above a real driver: slices are recognised and substituted, and the image is the same.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,7 +50,7 @@ TEST_P(Recognition, GivesTheApplicationsImageFromEveryAngle) {
   }
 }
 
-// Twice: the run before may have changed what the application draws with.
+// Two frames: the first may have changed state that the application draws with.
 TEST_P(Recognition, WithoutTheVolumeUnitTheImageIsBitIdentical) {
   Options options;
   options.chain = "track driver";
@@ -93,7 +93,7 @@ TEST(RecognitionOfChanges, ATextureUploadedAgainIsSeen) {
   EXPECT_EQ(app->left(), 0U) << app->last_reason();
 }
 
-/// A context that loads and never draws a frame.
+/// The other context uploads and never draws a frame.
 TEST(RecognitionOfChanges, ATextureUploadedAgainByAnotherContextIsSeen) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
@@ -176,7 +176,7 @@ TEST(RecognitionOfFormats, EveryScalarFormatIsReadBackAndProbed) {
     const char* name;
     GLenum internal_format;
     GLenum format;
-    float scale;  ///< of the texels: float formats may leave [0,1]
+    float scale;  ///< of the texels: float formats may exceed [0,1]
   };
   for (const Format& format :
        {Format{"R8", GL_R8, GL_RED, 1}, Format{"R16", GL_R16, GL_RED, 1}, Format{"R16F", GL_R16F, GL_RED, 1},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever is not understood is not substituted, bit for bit, with its reason.
+// What is not understood is not substituted: the image is bit-identical, and the reason is reported.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 struct Refusal {
   const char* what;
   const char* reason;
-  std::function<void(GlApplication&)> disturb;  ///< state in which no volume may be substituted
+  std::function<void(GlApplication&)> disturb;  ///< sets state in which no volume may be substituted
 };
 
 std::vector<Refusal> refusals() {
@@ -60,7 +60,7 @@ std::vector<Refusal> refusals() {
          a.gl().GenQueries(1, &query);
          a.gl().BeginQuery(GL_SAMPLES_PASSED, query);
          a.gl().EndQuery(GL_SAMPLES_PASSED);
-         // No sample has passed: nothing of what follows is drawn.
+         // No sample has passed, so nothing that follows is drawn.
          a.gl().BeginConditionalRender(query, GL_QUERY_WAIT);
        }},
       {"a query that counts primitives", "a query counts the primitives of the slices",
@@ -124,7 +124,7 @@ TEST(Refusals, ShadersWhoseColourDependsOnPositionAreLeft) {
   EXPECT_EQ(under, app->read_pixels());
 }
 
-// The front end that reads shaders knows extensions that the driver does not: what the driver compiles counts.
+// The shader front end supports extensions that the driver lacks; the branch that the driver compiles counts.
 TEST(Refusals, AreDecidedOnTheBranchThatTheDriverCompiles) {
   const std::string by_sample = "shown = texture1D(table, texture3D(field, gl_TexCoord[0].xyz).r);\n";
   const std::string by_place = by_sample + "shown *= gl_TexCoord[0].y;\n";
@@ -186,7 +186,7 @@ TEST(Refusals, ASingleSliceIsLeft) {
 TEST(Refusals, PlainDrawingIsNeitherCountedNorChanged) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
-  immediate_rgba().set_up(*app);  // a 3-D texture exists, and is not used
+  immediate_rgba().set_up(*app);  // a 3-D texture exists, but is not used
   const auto left = app->left();
   const auto frame = [&](bool under) {
     app->use_chain(under);
@@ -206,7 +206,7 @@ TEST(Refusals, PlainDrawingIsNeitherCountedNorChanged) {
 }
 
 TEST(Refusals, ADeferredRunThatTurnsOutOtherwiseIsDrawnAsItWas) {
-  // A material change between glBegin and glEnd: the run is given up half way.
+  // A material change between glBegin and glEnd: the run is given up halfway.
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
   const SliceScene scene = immediate_rgba();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ways of drawing a volume that are not slices whose colour is the sample's: not substituted, bit for
-// bit, for the right reason.
+// Ways of drawing a volume other than slices whose colour is a function of the sample: not substituted,
+// bit-identical, with the correct reason.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -289,7 +289,7 @@ TEST_P(RefusedDrawing, IsLeftBitIdentical) {
 INSTANTIATE_TEST_SUITE_P(Of, RefusedDrawing, ::testing::ValuesIn(drawings()),
                          [](const auto& info) { return std::string(info.param.name); });
 
-/// Each slice is drawn twice: as the eye sees it, lit by what the light's buffer says, and into that buffer.
+/// Each slice is drawn twice: to the screen, lit by the light buffer, and into the light buffer.
 TEST(RefusedDrawings, HalfAngleSlicingIsLeftBitIdentical) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";

@@ -21,7 +21,7 @@ void hear(const char* name, std::initializer_list<float> values) {
   heard.push_back(text);
 }
 
-/// A driver that writes down the few calls that runs of slices are made of.
+/// A driver that records the few calls that runs of slices consist of.
 DispatchTable listening_driver() {
   DispatchTable table{};
   table.Begin = [](GLenum mode) { hear("Begin", {float(mode) / 100}); };

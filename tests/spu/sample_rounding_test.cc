@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples as a driver rounds them that filters 8-bit texels in 8 bits.
+// Samples as rounded by a driver that filters 8-bit texels with 8 bits.
 #include "spu/volume/classification/sample_rounding.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// More than one run of slices in a frame: two volumes, two viewports, one texture drawn twice. Where the judge
-// reaches (one viewport), it is the same frame in double precision.
+// Several runs of slices in a frame: two volumes, two viewports, one texture drawn twice. With one viewport the
+// frame is also compared with the emulation in double precision.
 #include <gtest/gtest.h>
 
 #include "drawing.h"
@@ -16,7 +16,7 @@ class SeveralVolumes : public ::testing::Test {
     if (!app_) GTEST_SKIP() << "no EGL context here; install libegl1 and libgl1-mesa-dri";
   }
 
-  /// load_colours() as draw_cube() shows it.
+  /// load_colours() as drawn by draw_cube().
   static emulation::Volume cube(const emulation::Matrix& camera, bool mirrored = false) {
     std::vector<std::uint8_t> field = Blob().texels();
     if (mirrored) field.assign(field.rbegin(), field.rend());
@@ -34,7 +34,7 @@ class SeveralVolumes : public ::testing::Test {
     return volume;
   }
 
-  /// Two frames each way; every frame is to substitute `runs` runs, and to show `volumes`.
+  /// Draws two frames with and without the chain; every frame must substitute `runs` runs and show `volumes`.
   template <class Frame>
   void expect_alike(const char* what, std::uint64_t runs, Frame draw,
                     const std::vector<emulation::Volume>& volumes = {}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is kept for all contexts of a group.
+// State that is kept for all contexts of a share group.
 #include "spu/track/share_group.h"
 
 #include <gmock/gmock.h>
@@ -64,7 +64,7 @@ TEST(ShareGroup, KeepsFewBoxesHoweverManyChangesThereAre) {
   for (int z = 0; z < 200; ++z) group.texture_changed(7, {{0, 0, z}, {64, 64, z + 1}});
   EXPECT_THAT(*group.changes_since(7, before), ElementsAre(TexelBox{{0, 0, 0}, {64, 64, 200}}))
       << "slices in a row are one segment";
-  // Far apart: the oldest are taken together, and whoever has seen them is told the latest exactly.
+  // Boxes far apart: the oldest are merged, while a reader that has seen these still gets the latest exactly.
   std::uint64_t seen = 0;
   for (int i = 0; i < 100; ++i) {
     seen = group.texture_version(7);
@@ -197,7 +197,7 @@ TEST_F(Sources, OfAShaderDeletedWhileAttachedAreLinked) {
   EXPECT_THAT(kept.program(program)->vertex_sources, ElementsAre("vertex text"));
   kept.program_deleted(program);
   EXPECT_EQ(kept.program(program), nullptr);
-  // The names are free, and mean other shaders now.
+  // The names are free and now denote other shaders.
   given(fragment, GL_FRAGMENT_SHADER, "another");
   kept.program_created(program);
   kept.shader_attached(program, fragment);

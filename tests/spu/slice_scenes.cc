@@ -67,7 +67,7 @@ void blend_over(const DispatchTable& gl) {
   gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
 }
 
-using Matrix = std::array<float, 16>;  // column-major, as OpenGL wants it
+using Matrix = std::array<float, 16>;  // column-major, as OpenGL expects
 
 Matrix camera_matrix(double angle) {
   const double c = std::cos(angle * M_PI / 180);
@@ -222,7 +222,7 @@ SliceScene display_list_texgen() {
         app.gl().Enable(GLenum(GL_CLIP_PLANE0 + 2 * int(k) + side));
       }
     }
-    // The billboard: the slices face the eye, whatever the volume's rotation was when texgen was set.
+    // Billboard: the slices face the eye, whatever the volume's rotation was when texgen was set.
     app.gl().LoadIdentity();
     app.gl().Translated(0, 0, -3);
     blend_over(app.gl());
@@ -581,8 +581,8 @@ SliceScene pre_integrated_slices(bool along_rays) {
     gl.BindTexture(GL_TEXTURE_3D, texture);
     filter(gl, GL_TEXTURE_3D, GL_LINEAR);
     gl.TexImage3D(GL_TEXTURE_3D, 0, GL_R32F, blob.x, blob.y, blob.z, 0, GL_RED, GL_FLOAT, values.data());
-    // Of a narrow band of values: segments whose ends lie on either side of it show it, samples alone would
-    // not.
+    // Only a narrow band of values is visible: segments with ends on both sides of the band show it, single
+    // samples do not.
     constexpr int edge = 256;
     const auto below = [](double s) { return 0.02 * s + 0.5 / (1 + std::exp(-60 * (s - 0.55))); };
     std::vector<float> table;
@@ -802,7 +802,7 @@ SliceScene view_space_slices() {
                                            q[3 * corner], q[3 * corner + 1], q[3 * corner + 2]});
       }
     }
-    // The buffer is larger than what is drawn of it: the rest is one corner, over and over.
+    // The buffer is larger than the drawn part: the remainder repeats one corner.
     triangles.resize(triangles.size() + 6 * 30);
     gl.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(triangles.size() * sizeof(GLfloat)), triangles.data(),
                   GL_STREAM_DRAW);

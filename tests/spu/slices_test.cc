@@ -13,7 +13,7 @@ namespace {
 
 using volume::Vec3;
 
-/// A parallel camera that looks along -z: texture z grows towards the eye.
+/// A parallel camera that looks along -z: texture z increases towards the eye.
 const volume::Matrix4 front_view = {2, 0, 0, -1, 0, 2, 0, -1, 0, 0, -1, 0.5, 0, 0, 0, 1};
 
 struct Drawing {
@@ -31,7 +31,7 @@ struct Drawing {
   }
 };
 
-/// Back to front, as a viewer must draw them under over.
+/// Slices from back to front, as a viewer must draw them for over.
 Drawing full_slices(int count) {
   Drawing drawing;
   for (int i = 0; i < count; ++i) drawing.quad(0, 0, 1, 1, (i + 0.5) / count);

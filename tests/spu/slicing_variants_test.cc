@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Less usual ways of slicing above a real driver, judged in float framebuffers against the application's own
+// Less common ways of slicing above a real driver, compared in float framebuffers with the application's own
 // drawing.
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ std::vector<float> frame(GlApplication& app, const ColourTarget& target, const S
   return target.read();
 }
 
-/// Filtered as mip-mapped textures are, though samples are of level 0 alone: `limit` says how.
+/// Slices with a mipmap filter whose samples come from level 0 only; `limit` restricts the levels.
 SliceScene slices_of_one_level(void (*limit)(const DispatchTable&)) {
   SliceScene scene = immediate_rgba();
   scene.set_up = [limit, set_up_texture = scene.set_up](GlApplication& app) {
@@ -43,8 +43,8 @@ struct Variant {
   const char* name;
   std::function<SliceScene()> scene;
   std::vector<double> angles;
-  double least_psnr;  ///< dB, in float
-  const char* told;   ///< what its explanation holds
+  double least_psnr;  ///< dB, in a float framebuffer
+  const char* told;   ///< text that the explanation contains
 };
 
 class SlicingVariants : public ::testing::TestWithParam<Variant> {};
@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(
         Variant{"DegenerateStrip", [] { return degenerate_strip(); }, {0, 15, -40}, 45, "perspective"}),
     [](const auto& info) { return std::string(info.param.name); });
 
-/// The program's table changes, and so does what is probed.
+/// When the program's table changes, it is probed again.
 TEST(Segments, OfAnotherTableAreProbedAgain) {
   const SliceScene scene = pre_integrated_slices(false);
   auto app = GlApplication::start(scene.profile);
@@ -133,7 +133,7 @@ TEST(Segments, OfAnotherTableAreProbedAgain) {
   EXPECT_GE(psnr(under, bare), 45);
 }
 
-/// Draws once under Understudy and once without it: nothing may be substituted, and no bit differ.
+/// Draws once with Understudy and once without: nothing may be substituted, and no bit may differ.
 void expect_left(GlApplication& app, const SliceScene& scene, const std::string& reason) {
   const ColourTarget target(app, GL_RGBA32F);
   const auto under = frame(app, target, scene, 15, true);
@@ -169,7 +169,7 @@ TEST(Segments, WhoseColourDependsOnTheirPlaceAreLeft) {
   expect_left(*app, scene, "the colour depends on more than the sample (position, lighting)");
 }
 
-/// Many images of one size, blended side by side by a program.
+/// Many images of the same size, blended side by side by a program.
 TEST(StacksUnderGlsl, ImagesSideBySideAreNoVolumeAndNoWordIsSaid) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One context is brought into the state of another by the calls that make the difference, above a real driver.
+// The calls of a state difference bring one context into the state of another, above a real driver.
 #include <EGL/egl.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ struct CurrentContext {
   void make_current() const { eglMakeCurrent(display, surface, surface, context); }
 };
 
-/// Names to bind, by the query that answers them. Those of objects that are not shared are the same in both
+/// Names to bind, by the query that returns them. Objects that are not shared have the same names in both
 /// contexts, because both make the same ones.
 using Objects = std::map<GLenum, std::vector<double>>;
 
@@ -108,14 +108,14 @@ void make_shared_objects(const DispatchTable& gl, Objects& objects) {
 
 void make_own_objects(const DispatchTable& gl, Objects& objects) {
   std::array<GLuint, 2> names{};
-  // Mesa shares framebuffers, too.
+  // Mesa shares framebuffers as well.
   std::vector<double>& framebuffers = objects[GL_DRAW_FRAMEBUFFER_BINDING];
   if (framebuffers.empty() || gl.IsFramebuffer(GLuint(framebuffers[0])) == GL_FALSE) {
     gl.GenFramebuffers(2, names.data());
     framebuffers = {double(names[0]), double(names[1])};
   }
   objects[GL_READ_FRAMEBUFFER_BINDING] = framebuffers;
-  // The stencil's reference value is answered within the bits that the framebuffer has.
+  // The stencil reference value is returned clamped to the framebuffer's stencil bits.
   for (const double name : framebuffers) {
     gl.BindFramebuffer(GL_FRAMEBUFFER, GLuint(name));
     gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER,
@@ -138,7 +138,7 @@ std::vector<double> range(int first, int last) {
   return values;
 }
 
-/// What the value of a query may be; empty: anything from 0 to 1.
+/// Possible values of a query; empty: anything from 0 to 1.
 std::vector<double> choices_of(GLenum name) {
   using Choices = std::vector<double>;
   static const Choices functions = range(GL_NEVER, GL_ALWAYS);
@@ -331,7 +331,7 @@ void expect_equal(const State& got, const State& wanted, const std::string& what
   EXPECT_TRUE(::testing::Test::HasFailure() || got == wanted) << what;
 }
 
-/// Makes the calls, and tells which they were.
+/// Makes the calls and returns which ones they were.
 std::vector<CallId> apply(const Records& records, const DispatchTable& gl) {
   std::vector<CallId> calls;
   Decoder decoder;
@@ -356,7 +356,7 @@ Profile profile_of(Kind kind) {
   return kind == Kind::core ? Profile::core : Profile::compatibility;
 }
 
-/// A driver of the newest version also answers as an old one is asked.
+/// For version 2.1, a newer driver that reports the old version.
 DispatchTable table_of(Kind kind, const DispatchTable& driver) {
   DispatchTable table = driver;
   if (kind == Kind::version_2_1) {
@@ -389,7 +389,7 @@ class StateDifference : public ::testing::TestWithParam<Kind> {
   void use_first() const { first_context_.make_current(); }
   void use_second() const { second_context_.make_current(); }
 
-  /// With GL_COLOR_MATERIAL the material is no state of its own.
+  /// While GL_COLOR_MATERIAL is enabled, the material is not independent state.
   State random_state(State state, Random& random) const {
     for (const State::Item& item : state.items()) {
       if (item.row->queries[0].name == GL_COLOR_MATERIAL) continue;
@@ -452,7 +452,7 @@ TEST_P(StateDifference, OfEqualStatesIsNothing) {
 TEST_P(StateDifference, OfOneItemIsItsCall) {
   use_first();
   if (GetParam() != Kind::core) {
-    // Enabling GL_COLOR_MATERIAL makes the material of the current colour.
+    // Enabling GL_COLOR_MATERIAL sets the material to the current colour.
     constexpr std::array<GLfloat, 4> white = {1, 1, 1, 1};
     gl().Materialfv(GL_FRONT_AND_BACK, GL_AMBIENT_AND_DIFFUSE, white.data());
   }
@@ -461,7 +461,7 @@ TEST_P(StateDifference, OfOneItemIsItsCall) {
   Random random(7);
   for (const State::Item& item : before.items()) {
     int& count = exercised[item.row];
-    // Of many alike, the first, the second and some others.
+    // Of many similar items: the first, the second and some others.
     if (count >= 2 && random() % 16 != 0) continue;
     SCOPED_TRACE(name_of(item));
     State wanted = before;
@@ -483,7 +483,7 @@ TEST_P(StateDifference, OfOneItemIsItsCall) {
     switch (item.row->group) {
       case StateGroup::framebuffer:
       case StateGroup::vertex_array:
-        // Another object may have other contents.
+        // Another object may have different contents.
         EXPECT_GE(others(there), 1U);
         break;
       case StateGroup::indexed_buffers:
@@ -523,7 +523,7 @@ TEST(StateRows, AreAllAskedOfSomeContext) {
 
 class CompatibilityState : public StateDifference {};
 
-/// Set by an application in its own way, and asked by the test's own questions.
+/// State set by an application's own calls, and queried by the test itself.
 TEST_P(CompatibilityState, IsWhatTheApplicationsCallsMadeIt) {
   use_first();
   const auto& gl = this->gl();

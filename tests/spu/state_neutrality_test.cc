@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every row of state that OpenGL can be asked (spu/track/state.h), and what that table leaves out, is the same
-// after a substituted draw as after the application's own.
+// Every row of queryable OpenGL state (spu/track/state.h), and state that this table omits, is the same after a
+// substituted draw as after the application's own.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -62,7 +62,7 @@ void dump_textures(const DispatchTable& gl, bool core, Dump& dump) {
   gl.ActiveTexture(GLenum(active));
 }
 
-/// What the rows leave out and only compatibility contexts have.
+/// State that the rows omit and that only compatibility contexts have.
 void dump_fixed_function(const DispatchTable& gl, Dump& dump) {
   const std::vector<std::pair<GLenum, std::size_t>> values = {{GL_CURRENT_RASTER_POSITION, 4},
                                                               {GL_CURRENT_RASTER_POSITION_VALID, 1},
@@ -120,8 +120,8 @@ Dump dump_state(const DispatchTable& gl, bool core) {
   return dump;
 }
 
-/// Values away from their defaults, so that what is put back is told from what is reset; none changes a
-/// image.
+/// Sets values that differ from their defaults, to distinguish restored values from reset ones; none affects
+/// the image.
 void mark(const DispatchTable& gl, bool core) {
   gl.PolygonOffset(1.5F, 2.5F);
   gl.StencilFunc(GL_GEQUAL, 3, 0x7F);
@@ -204,7 +204,7 @@ void mark(const DispatchTable& gl, bool core) {
 
 class NeutralState : public ::testing::TestWithParam<std::size_t> {};
 
-/// The usual ways of slicing, and the less usual ones.
+/// The common and the less common ways of slicing.
 std::vector<SliceScene> scenes() {
   std::vector<SliceScene> all = all_slice_scenes();
   for (const bool along_rays : {false, true}) all.push_back(pre_integrated_slices(along_rays));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Without a trace: what OpenGL can be asked is the same after a substituted draw as after the application's
-// own.
+// Substitution leaves no trace in the state: OpenGL queries return the same after a substituted draw as after
+// the application's own.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -24,8 +24,8 @@ struct Asked {
 #define ASK(name, count) \
   { #name, name, count }
 
-/// State that our own drawing might touch, and its neighbours. Names of objects we create are not the
-/// application's.
+/// State that Understudy's drawing might change, and related state. Names of objects that Understudy creates do
+/// not belong to the application.
 const std::vector<Asked>& asked_everywhere() {
   static const std::vector<Asked> list = {ASK(GL_ACTIVE_TEXTURE, 1),
                                           ASK(GL_ARRAY_BUFFER_BINDING, 1),
@@ -196,7 +196,7 @@ TEST(StateNeutrality, ASubstitutedDrawLeavesWhatTheApplicationsOwnLeaves) {
     auto app = GlApplication::start(scene.profile);
     if (!app) GTEST_SKIP() << "no EGL context here";
     scene.set_up(*app);
-    // Marked values, so that a restored default is told apart from an untouched one.
+    // Non-default values, to distinguish a restored default from an untouched one.
     app->gl().PixelStorei(GL_PACK_ALIGNMENT, 2);
     app->gl().PixelStorei(GL_UNPACK_SKIP_PIXELS, 3);
     app->gl().Enable(GL_SCISSOR_TEST);
@@ -223,7 +223,7 @@ TEST(StateNeutrality, TheApplicationsOwnErrorStaysItsOwn) {
   if (!app) GTEST_SKIP() << "no EGL context here";
   const SliceScene scene = client_arrays_table();
   scene.set_up(*app);
-  app->gl().Enable(0x1234);  // an error of the application's
+  app->gl().Enable(0x1234);  // an error of the application
   scene.draw(*app, 10);
   EXPECT_EQ(app->gl().GetError(), GLenum(GL_INVALID_ENUM));
   EXPECT_EQ(app->gl().GetError(), GLenum(GL_NO_ERROR));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// In steady state a call costs no memory: the chain, its units and the way between them allocate nothing.
-// malloc of this program is the one below, which counts.
+// In steady state the chain and its units allocate no memory in a call. This program's malloc is the one below,
+// which counts.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -26,7 +26,7 @@ void note() {
 
 }  // namespace
 
-// glibc's own names of its functions, made for those who replace malloc.
+// glibc's own names for its functions, intended for programs that replace malloc.
 // NOLINTBEGIN(bugprone-reserved-identifier)
 extern "C" {
 void* __libc_malloc(std::size_t size);
@@ -63,7 +63,7 @@ std::size_t allocations_of(Action action) {
   return allocations;
 }
 
-/// What applications do in every frame, with calls that track overrides among them.
+/// Calls that applications make in every frame, including calls that `track` overrides.
 void draw_frame(const DispatchTable& gl) {
   static constexpr std::array<GLfloat, 16> matrix{};
   static constexpr std::array<GLubyte, 64> texels{};
@@ -92,7 +92,7 @@ class SteadyState : public ::testing::TestWithParam<const char*> {};
 TEST_P(SteadyState, AllocatesNothing) {
   testing::MockDriver mock;
   mock.only_count();
-  // track asks which texture is bound.
+  // track queries which texture is bound.
   mock.slots().GetIntegerv = [](GLenum, GLint* value) { *value = 3; };
   Chain chain(mock.table(), std::make_shared<ShareGroup>(), install);
   ASSERT_EQ(assemble(chain, GetParam(), nullptr).value_or(""), "");
@@ -139,7 +139,7 @@ TEST(Records, AllocateNothingOnceTheyHaveRoom) {
   EXPECT_EQ(mock.counted() - before, 60000U) << "the calls arrive";
 }
 
-// The counting counts: what allocates is seen.
+// Checks the counting: an allocation is noticed.
 TEST(Allocations, AreSeen) {
   std::unique_ptr<std::vector<int>> kept;
   EXPECT_GE(allocations_of([&] { kept = std::make_unique<std::vector<int>>(1000); }), 2U);

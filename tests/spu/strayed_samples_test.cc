@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where application and nodes show different samples along the edges of slices, whose they are: the rasteriser
-// puts vertices on its grid of 1/256 pixel before it decides which pixels' centres a slice covers.
+// Where application and nodes show different samples along the edges of slices, the rasteriser is the cause: it
+// snaps vertices to its grid of 1/256 pixel before it decides which pixel centres a slice covers.
 #include <gtest/gtest.h>
 
 #include "colour_target.h"
@@ -12,8 +12,8 @@ namespace {
 
 using emulation::Equation;
 
-/// The driver filters floats in float. It interpolates coordinates over the window and divides them by w: some
-/// eight roundings of numbers up to 4.
+/// The driver filters floats in float. It interpolates coordinates over the window and divides them by w: about
+/// eight roundings of values up to 4.
 constexpr emulation::Precision driver_on_floats{
     .coordinate = 32 * emulation::float_step, .window = 1.0 / 256, .value = 8 * emulation::float_step};
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws under state that our own drawing must heed, and leave as it was: primitive restart, lines among the
+// Draws under state that Understudy's drawing must respect and preserve: primitive restart, lines among the
 // slices, the application's transform feedback.
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A texture that changes between frames: only what differs travels, and the image is that of a texture which
-// was loaded with the new texels from the start, bit for bit.
+// A texture that changes between frames: only differences are transmitted, and the image equals, bit for bit,
+// that of a texture that was loaded with the new texels from the start.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ const TexelBox whole{{0, 0, 0}, {70, 50, 40}};
 constexpr std::size_t all_texels = std::size_t{70} * 50 * 40;
 constexpr std::uint64_t block_bytes = 16 * 16 * 16;
 
-/// The texels as the application has them; the texture follows.
+/// The application's copy of the texels, from which the texture is updated.
 template <class Texel>
 class Film {
  public:
@@ -71,7 +71,7 @@ class Film {
     app_.end_frame();
     return pixels;
   }
-  /// What a texture shows that was never anything else.
+  /// Draws with a new texture that has held these texels only.
   std::vector<float> draw_fresh(double angle) {
     GLint texture = 0;
     GLuint fresh = 0;
@@ -210,14 +210,14 @@ TEST(TexelChanges, CopiedFromTheFramebufferAreSeen) {
   EXPECT_EQ(sent.bytes(), block_bytes);
 }
 
-/// A texture like the one that is bound.
+/// Makes a texture like the bound one.
 GLuint define_another(GlApplication& app, std::uint8_t value, const TexelBox& box) {
   GLint bound = 0;
   GLuint texture = 0;
   app.gl().GetIntegerv(GL_TEXTURE_BINDING_3D, &bound);
   app.gl().GenTextures(1, &texture);
   app.gl().BindTexture(GL_TEXTURE_3D, texture);
-  // Incomplete textures cannot be copied from.
+  // Copying from incomplete textures is not possible.
   app.gl().TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   const std::vector<std::uint8_t> texels(volume::texels_in(box), value);
   app.gl().TexImage3D(GL_TEXTURE_3D, 0, GL_R8, box.high[0], box.high[1], box.high[2], 0, GL_RED,
@@ -232,7 +232,7 @@ GLuint bound_texture(GlApplication& app, GLenum binding) {
   return GLuint(texture);
 }
 
-// Only the destination is looked at again, and there only the blocks that the copy touches.
+// Only the destination is inspected again, and only the blocks that the copy touches.
 TEST(TexelChanges, CopiedFromAnotherTextureConcernTheDestinationAlone) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";

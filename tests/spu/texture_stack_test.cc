@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stacks of 2-D textures that are a volume, and textured quads that are none.
+// Stacks of 2-D textures that form a volume, and textured quads that do not.
 #include <gtest/gtest.h>
 
 #include "slice_scenes.h"
@@ -83,7 +83,7 @@ TEST(TextureStacks, OfTexturesThatDifferAreLeftWithTheReason) {
   EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
 }
 
-/// A desktop: many images of one size, blended side by side.
+/// Like a desktop: many images of the same size, blended side by side.
 TEST(TextureStacks, ImagesSideBySideAreNoVolumeAndNoWordIsSaid) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";

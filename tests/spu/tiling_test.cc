@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which textures are pieces of one volume, and where they lie in it.
+// Which textures are pieces of one volume, and their positions in it.
 #include "spu/volume/merging/tiling.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using volume::Matrix4;
 
 constexpr std::array<volume::Wrap, 3> edges{volume::Wrap::edge, volume::Wrap::edge, volume::Wrap::edge};
 
-/// From texels of the whole to clip space: a turned volume in perspective.
+/// From texels of the whole volume to clip space: rotated, in perspective.
 Matrix4 camera() {
   const double c = std::cos(0.4);
   const double s = std::sin(0.4);
@@ -28,8 +28,8 @@ Matrix4 camera() {
   return volume::multiply(projection, turned);
 }
 
-/// A texture that holds `size` texels from `origin` on, of which `texels` (low and high, in texels of the
-/// whole) are drawn.
+/// A texture that holds `size` texels from `origin` on, of which the box from `low` to `high` (in texels of the
+/// whole volume) is drawn.
 DrawnBrick brick(const std::array<int, 3>& origin, const std::array<int, 3>& size, const volume::Vec3& low,
                  const volume::Vec3& high, Filter filter = Filter::linear, const Matrix4& whole = camera()) {
   Matrix4 placed{};
@@ -47,8 +47,8 @@ DrawnBrick brick(const std::array<int, 3>& origin, const std::array<int, 3>& siz
   return drawn;
 }
 
-/// Along x: a volume of 37 x 21 x 9 texels in textures of 16 that share 1 + 2 `ghost` texels, the last of which
-/// is smaller, or padded to 16.
+/// A row of bricks along x: a volume of 37 x 21 x 9 texels in textures of 16 that share 1 + 2 `ghost` texels;
+/// the last texture is smaller, or padded to 16.
 std::vector<DrawnBrick> row(int ghost, bool padded) {
   std::vector<DrawnBrick> bricks;
   constexpr int size = 37;
@@ -71,7 +71,7 @@ TEST_P(Rows, AreOneVolume) {
   const auto found = find_tiling(bricks, Filter::linear, edges);
   ASSERT_TRUE(std::holds_alternative<Tiling>(found)) << std::get<std::string>(found);
   const auto& tiling = std::get<Tiling>(found);
-  // Of padding one texel is read beyond the volume.
+  // With padding, one texel beyond the volume is read.
   EXPECT_EQ(tiling.size, (std::array<int, 3>{padded ? 38 : 37, 21, 9}));
   for (std::size_t i = 0; i < bricks.size(); ++i) {
     EXPECT_EQ(tiling.places[i].origin, (std::array<int, 3>{int(i) * (15 - 2 * ghost), 0, 0}));
@@ -134,7 +134,7 @@ TEST(Tilings, AreOfOneLattice) {
 }
 
 TEST(Tilings, AreDrawnFromBackToFront) {
-  // The eye is far up the z axis, planes are numbered away from it.
+  // The eye is far up the z axis; planes are numbered away from it.
   const Matrix4 from_above{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
   const volume::SlicePlanes planes{{0, 0, 1}, 1, -0.1, 10};
   const std::vector<volume::Box> rising{{{0, 0, 0}, {1, 1, 0.5}}, {{0, 0, 0.5}, {1, 1, 1}}};
@@ -143,7 +143,7 @@ TEST(Tilings, AreDrawnFromBackToFront) {
   EXPECT_FALSE(drawn_in_order(falling, from_above, planes, true));
   EXPECT_FALSE(drawn_in_order(rising, from_above, planes, false));
   EXPECT_TRUE(drawn_in_order(falling, from_above, planes, false));
-  // Side by side they hide nothing of each other.
+  // Bricks side by side do not hide each other.
   const std::vector<volume::Box> beside{{{0, 0, 0}, {0.5, 1, 1}}, {{0.5, 0, 0}, {1, 1, 1}}};
   EXPECT_TRUE(drawn_in_order(beside, from_above, planes, true));
   EXPECT_TRUE(drawn_in_order(beside, from_above, planes, false));

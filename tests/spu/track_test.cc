@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The track unit above a driver that writes down what it is called.
+// The track unit above a driver that records its calls.
 #include "spu/track/track.h"
 
 #include <gmock/gmock.h>
@@ -35,7 +35,7 @@ struct Nothing<Slot> {
   }
 };
 
-/// Commands that the tests use do nothing; the others do not exist.
+/// Commands that the tests use do nothing; all others are missing.
 const DispatchTable& nothing() {
   static const DispatchTable table = [] {
     using Table = DispatchTable;

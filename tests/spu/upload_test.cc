@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever way the texels went up, and in whatever format, the volume that is drawn is the one that they tell,
-// judged in double precision.
+// For every way and format of upload, the volume that is drawn has the uploaded texels; images are compared
+// with the emulation in double precision.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace understudy::spu::testing {
 namespace {
 
-/// Not the field that the scenes load: an image of that one would be wrong.
+/// Differs from the field that the scenes load, so that an image of the latter is detected.
 std::vector<std::uint8_t> other_field() {
   std::vector<std::uint8_t> texels = Blob().texels();
   std::reverse(texels.begin(), texels.end());
@@ -46,15 +46,15 @@ std::vector<double> the_other_field() {
 
 struct Way {
   const char* name;
-  std::function<void(GlApplication&)> upload;  ///< into the texture bound in the end
+  std::function<void(GlApplication&)> upload;  ///< into the texture that is bound afterwards
   std::function<std::vector<double>()> held = the_other_field;
-  bool changes = true;  ///< the scene's own volume is another
+  bool changes = true;  ///< false: the scene's own volume is kept
 };
 
-/// Floats of 16 bits, cut off below 1: they have ten bits of mantissa, and begin at one half.
+/// Truncation error of 16-bit floats just below 1: ten bits of mantissa, counted from one half.
 constexpr double half_step = 1.0 / (1 << 11);
 
-/// What scene.draw() clears to.
+/// The clear colour of scene.draw().
 constexpr emulation::Colour backdrop{0.1F, 0.2F, 0.3F, 0};
 
 void define(const DispatchTable& gl, const void* texels) {
@@ -288,8 +288,8 @@ TEST(UploadsOf, PaddingAreNoVolume) {
   EXPECT_GE(psnr(under, app->read_pixels()), 40);
 }
 
-/// The colour of a fragment before it is multiplied by the primary one, from a texel whose channels all are s
-/// (a fifth of it: alpha of four channels).
+/// Fragment colour before multiplication by the primary colour, for a texel with all channels s (alpha of four
+/// channels: a fifth of s).
 enum class Base { alpha, luminance, intensity, red, colours };
 
 std::array<double, 4> of_base(Base base, double s, double alpha) {
@@ -312,9 +312,9 @@ struct Format {
   const char* name;
   GLenum internal_format;
   GLenum format;
-  const char* reason;  ///< why it is left; null: it is not
+  const char* reason;  ///< why it is refused; null: it is substituted
   Base base = Base::colours;
-  double step = 0;  ///< of what the format holds
+  double step = 0;  ///< precision of the stored format
 };
 
 class Formats : public ::testing::TestWithParam<Format> {};
@@ -378,7 +378,7 @@ INSTANTIATE_TEST_SUITE_P(
         Format{"R32F", GL_R32F, GL_RED, nullptr, Base::red}, Format{"RGBA8", GL_RGBA8, GL_RGBA, nullptr},
         Format{"RGBA", GL_RGBA, GL_RGBA, nullptr}, Format{"RGBA16", GL_RGBA16, GL_RGBA, deep_colours},
         Format{"RGBA32F", GL_RGBA32F, GL_RGBA, deep_colours},
-        // Both channels of the two are s.
+        // Both channels of these two formats are s.
         Format{"RGB8", GL_RGB8, GL_RGB, nullptr, Base::luminance},
         Format{"LUMINANCE8_ALPHA8", GL_LUMINANCE8_ALPHA8, GL_LUMINANCE_ALPHA, nullptr, Base::intensity},
         Format{"LUMINANCE16_ALPHA16", GL_LUMINANCE16_ALPHA16, GL_LUMINANCE_ALPHA, deep_colours}),

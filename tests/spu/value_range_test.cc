@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Over which values a table is measured.
+// The value range over which a transfer function is measured.
 #include "spu/volume/texture/value_range.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ TextureDescription signed_words() {
   return texture;
 }
 
-/// How far from an entry of the table the value `stored` / steps lies, in entries.
+/// Distance of the value `stored` / steps from the nearest measured entry, in entries.
 double distance_to_entry(std::array<float, 2> range, int steps, int stored) {
   const double place =
       (double(stored) / steps - range[0]) / (double(range[1]) - range[0]) * (probed_entries - 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adaptive steps: nearer to the integral than samples as many, the same for any partition and instruction set.
+// Adaptive steps are closer to the integral than as many samples, for any partition and instruction set alike.
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
@@ -12,14 +12,14 @@
 namespace understudy::volume::testing {
 namespace {
 
-/// Steps are `voxels` of a volume of 40 texels long, which changes nothing of what the medium is.
+/// Each step is `voxels` long in a volume of 40 texels; opacity is corrected so that the medium stays the same.
 struct Setting {
   Method method = Method::adaptive;
   double voxels = 1;
   float tolerance = 1e-3F;
 };
 
-/// Opacity of one voxel, between so many entries that its extinction is linear between them.
+/// Opacity of one voxel, with enough entries that its extinction is linear between them.
 TransferFunction table_of(const std::function<double(double)>& opacity, double voxels) {
   TransferFunction table;
   for (int i = 0; i <= 2048; ++i) {
@@ -89,7 +89,7 @@ TEST(Adaptive, IsNearerThanSamplesAsMany) {
       Texture texture = sampled(describe({40, 40, 40}, type), sphere_field(0.3, 0.2));
       const ReferenceImage exact = integral(texture, request_of(texture, opacity, {}));
       const Result adaptive = result_of(texture, opacity, {Method::adaptive, 2, 3e-3F}, exact);
-      // The finest samples that are no fewer.
+      // The coarsest sampling with at least as many samples.
       Result samples;
       double voxels = 2;
       for (; samples.samples < adaptive.samples; voxels /= 1.1)
@@ -114,7 +114,7 @@ TEST(Adaptive, IsNearerTheSmallerTheTolerance) {
 }
 
 TEST(Adaptive, KeepsTheOrderOfItsSteps) {
-  // On a field that voxels hold exactly, undivided.
+  // On a field that the voxels represent exactly, without subdivision.
   Texture texture = sampled(describe({40, 40, 40}, TexelType::f32), linear_field({0.4, 0.3, 0.2}, 0.05));
   const ReferenceImage exact = integral(texture, request_of(texture, smooth, {}));
   std::vector<double> errors;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels that change after a volume is complete: the store and the images are those of a volume that was
-// filled with the new texels from the start.
+// Texels that change after a volume is complete: store and images equal those of a volume that was filled with
+// the new texels from the start.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -81,7 +81,7 @@ TEST_P(Changes, EqualAFreshVolumeBitForBit) {
           box.low[k] = stored.low[k] + int(random() % unsigned(extent));
           box.high[k] = box.low[k] + 1 + int(random() % unsigned(stored.high[k] - box.low[k]));
         }
-        // Constant boxes make blocks that share their place, and give it up in a later round.
+        // Constant boxes make blocks share their storage; a later round separates them again.
         Texture other = noise(description, unsigned(random()));
         if (round % 2 == 0) {
           const std::vector<std::byte> same(bytes_per_texel(kind.type), std::byte(round % 4 == 0 ? 0 : 0x3c));
@@ -115,7 +115,7 @@ TEST(Changes, TouchNoBlockThatDoesNotShowTheTexels) {
   const Texture texture = noise(describe({64, 64, 64}, TexelType::u8), 9);
   BrickStore store = filled(texture);
   std::vector<std::size_t> changed;
-  // Texels 0 to 7 belong to the first block alone; texel 8 is on the face to the next.
+  // Texels 0 to 7 belong to the first block only; texel 8 lies on the face to the next block.
   store.change({{0, 0, 0}, {8, 8, 8}}, std::vector<std::byte>(512), changed);
   EXPECT_EQ(changed, std::vector<std::size_t>{0});
   changed.clear();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every way to cut a volume: boxes that tile it on block faces, an image that stays the same, and costs that
-// are divided as fairly as faces allow.
+// Every way to cut a volume: the boxes tile it on block faces, the image stays the same, and costs are divided
+// as evenly as block faces allow.
 #include <gmock/gmock.h>
 
 #include "tests/volume/parts.h"
@@ -19,7 +19,7 @@ BlockCosts random_costs(const TexelBox& lattice, int edge, std::mt19937& random,
   return costs;
 }
 
-/// Moves every plane to any block face of the box that it cuts.
+/// Moves every plane to a random block face of the box that it cuts.
 Partition shaken(Partition partition, const TexelBox& lattice, std::mt19937& random) {
   for (std::size_t i = 0; i < partition.splits.size(); ++i) {
     const TexelBox box = cut_boxes(partition, lattice)[i];
@@ -64,7 +64,7 @@ TEST(Cuts, TileTheLatticeOnBlockFacesWhereverTheyLie) {
     for (const Partition& partition :
          {by_blocks(volume, ranks), by_factors(volume, ranks), by_cost(volume, ranks, CostSums(costs))}) {
       EXPECT_EQ(partition.ranks, ranks);
-      // 23 ranks do not fit into nine blocks along one axis: there cells are cut.
+      // 23 ranks along one axis do not fit into nine blocks, so cells are cut there.
       const std::array<int, 3> parts = factors(volume, ranks);
       expect_tiling(boxes(partition, volume), lattice, *std::ranges::max_element(parts) <= 8);
       const Partition moved = shaken(partition, lattice, random);
@@ -93,7 +93,7 @@ TEST(Cuts, ByCostDividesCostsAsFairlyAsFacesAllow) {
     const int ranks = 2 + trial % 7;
     const VolumeDescription volume = describe({257, 201, 161}, TexelType::u8);
     const TexelBox lattice = cell_lattice(volume).box();
-    // All that costs much lies in a ball somewhere.
+    // Almost all cost lies in a ball at a random position.
     BlockCosts costs(lattice, 8);
     std::uniform_real_distribution<double> uniform(0.2, 0.8);
     const Vec3 centre{uniform(random), uniform(random), uniform(random)};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified bounds: in random scenes, from smooth to stiff, no pixel is further from the integral than its
-// bound says.
+// Certified error bounds: in random scenes, from smooth to stiff, no pixel differs from the integral by more
+// than its bound.
 #include "volume/error_bound/error_bound.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ Texture random_texture(Random& random) {
   }
 }
 
-/// Opacity and colour for one voxel: smooth, steps, a comb, or one entry of up to 4,096.
+/// Opacity and colour for one voxel: smooth, a box, a comb, or a single spike among up to 4,096 entries.
 TransferFunction random_table(Random& random) {
   TransferFunction table;
   const auto entries = one_of<std::size_t>(random, {2, 16, 256, 4096});
@@ -84,8 +84,8 @@ RenderRequest bound_request(const Texture& texture, const TransferFunction& of_v
 }
 
 struct Outcome {
-  double bound = 0;  ///< the greatest of the image
-  double error = 0;  ///< likewise, of the pixels that were integrated
+  double bound = 0;  ///< largest of the image
+  double error = 0;  ///< largest of the integrated pixels
 };
 
 Outcome outcome_of(unsigned seed) {
@@ -117,7 +117,7 @@ Outcome outcome_of(unsigned seed) {
       double error = 0;
       for (std::size_t k = 0; k < 4; ++k)
         error = std::max(error, std::abs(double(image.at(x, y)[k]) - exact[k]));
-      // The reference's own error is a hundredth of a bound, or 1e-7.
+      // The reference's own error is at most a hundredth of a bound, or 1e-7.
       EXPECT_LE(error, bound + std::max(0.01 * bound, 1e-7))
           << "scene " << seed << ", pixel " << x << ", " << y;
       outcome.error = std::max(outcome.error, error);
@@ -188,7 +188,7 @@ TEST(ErrorBound, OfPartsComposesToABoundOfTheWhole) {
     for (const int ranks : {2, 5}) {
       const Image parts = render_parts(texture, request, ranks, draw).image;
       for (std::size_t i = 0; i < parts.rgba.size(); i += 4) {
-        // A part does not know what lies behind it.
+        // A part's bound is computed without what lies behind it.
         ASSERT_GE(parts.rgba[i], 0.9999F * whole.image.rgba[i] - 1e-6F) << i;
         ASSERT_LE(parts.rgba[i], 1.5F * whole.image.rgba[i] + 1e-6F) << i;
         ASSERT_NEAR(parts.rgba[i + 3], whole.image.rgba[i + 3], 1e-5F) << i;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hard cases: whatever the texels and the view, the image is finite, and right where right is defined.
+// Hard cases: for any texels and view the image is finite, and correct wherever correctness is defined.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -130,7 +130,7 @@ TEST(Extremes, ViewportsOfOnePixelAndOfOneLongRow) {
 }
 
 TEST(Extremes, AWorldFarFromTheOriginIsAsGood) {
-  // The eye and a unit volume at 1e7: what is left of it in the product of the matrices, in double.
+  // Eye and unit volume lie at 1e7; the product of the matrices in double loses the digits.
   const Texture texture = noise(describe({19, 17, 21}, TexelType::u8), 48);
   const double far = 1e7;
   const Matrix4 model{1, 0, 0, far - 0.5, 0, 1, 0, far - 0.5, 0, 0, 1, far - 0.5, 0, 0, 0, 1};
@@ -159,7 +159,7 @@ TEST(Extremes, MirroringTheSceneMirrorsTheImage) {
 }
 
 TEST(Extremes, LongRaysKeepTheirPrecision) {
-  // Many planes through few texels: positions come from the index, never from a running sum.
+  // Many planes through few texels: positions are computed from the index, never as a running sum.
   const Texture texture = noise(describe({9, 9, 9}, TexelType::u8), 50);
   RenderRequest request = request_for(texture, usual_camera(7, 7), 7, 7, 200000);
   request.classification = smooth_table(256, 1e-4F);

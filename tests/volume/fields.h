@@ -45,7 +45,7 @@ inline ScalarField marschner_lobb_field() {
   };
 }
 
-/// A texture with its texels, of `stored` alone.
+/// A texture with its texels, those of `stored` only.
 struct Texture {
   VolumeDescription description;
   std::vector<std::byte> texels;
@@ -68,7 +68,7 @@ inline std::size_t stored_texels(const VolumeDescription& d) {
   return n;
 }
 
-/// One texel from four components in [0, 1]; scalar types take the first.
+/// Writes one texel from four components in [0, 1]; scalar types take the first.
 inline void put_texel(Texture& texture, std::size_t index, const std::array<double, 4>& value) {
   const TexelType type = texture.description.type;
   std::byte* to = texture.texels.data() + index * bytes_per_texel(type);
@@ -93,7 +93,7 @@ inline void put_texel(Texture& texture, std::size_t index, const std::array<doub
   }
 }
 
-/// `field` at the texel centres; colours show it in four different shades.
+/// `field` sampled at the texel centres; the components of colour texels are four different functions of it.
 inline Texture sampled(const VolumeDescription& description, const ScalarField& field) {
   Texture texture{description,
                   std::vector<std::byte>(stored_texels(description) * bytes_per_texel(description.type))};
@@ -109,7 +109,7 @@ inline Texture sampled(const VolumeDescription& description, const ScalarField& 
   return texture;
 }
 
-/// Independent random texels: no wrong neighbour goes unnoticed.
+/// Independent random texels, so that a wrong neighbour is always noticed.
 inline Texture noise(const VolumeDescription& description, unsigned seed) {
   Texture texture{description,
                   std::vector<std::byte>(stored_texels(description) * bytes_per_texel(description.type))};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The operator first-hit: of every ray its first sample that is not clear, alone.
+// The operator first-hit shows the first sample of each ray that is not clear, and nothing else.
 #include <gtest/gtest.h>
 
 #include "tests/volume/parts.h"
@@ -10,7 +10,7 @@
 namespace understudy::volume::testing {
 namespace {
 
-/// Clear below the middle, then at once visible: rounding of values decides about few samples.
+/// Clear below the middle, then visible at once, so that rounding of values affects few samples.
 TransferFunction step_table(float opacity) {
   TransferFunction table;
   for (int i = 0; i < 256; ++i) {
@@ -38,7 +38,7 @@ TEST(FirstHit, ShowsTheFirstSampleThatIsNotClear) {
       RenderRequest request = request_of(texture, on_steps);
       if (type == TexelType::rgba8) {
         LinearMap map;
-        map.alpha_above = 0.16F;  // hides what is outside
+        map.alpha_above = 0.16F;  // hides the outside
         request.classification = map;
       }
       const Image image = render_whole(texture, request).image;
@@ -46,7 +46,8 @@ TEST(FirstHit, ShowsTheFirstSampleThatIsNotClear) {
                                              request, request.window);
       const Difference d = difference(image, exact, 1e-3);
       std::printf("texels %d, steps %d: %d pixels hit another sample\n", int(type), on_steps, d.pixels_over);
-      // Where a sample's value is that of the table's step to the last bit, the next may be the first.
+      // If a sample's value equals the position of the table's step up to rounding, the next sample may be the
+      // first.
       EXPECT_LE(d.pixels_over, 3);
       int hits = 0;
       for (std::size_t p = 3; p < image.rgba.size(); p += 4) {

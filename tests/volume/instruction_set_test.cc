@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same image on every instruction set that this machine can run, and from the plain kernel that the
-// vector kernel must agree with.
+// The image is the same on every instruction set that this machine can run, and equals that of the plain
+// kernel.
 #include <gmock/gmock.h>
 #include <hwy/targets.h>
 
@@ -19,7 +19,7 @@
 namespace understudy::volume::testing {
 namespace {
 
-/// Lets Highway know of one instruction set alone.
+/// Restricts Highway to one instruction set.
 class OnlyTarget {
  public:
   explicit OnlyTarget(std::int64_t target) {
@@ -40,7 +40,7 @@ struct Drawn {
   FrameCounts counts;
 };
 
-/// One image per instruction set, the plain kernel's first.
+/// One image per instruction set; the plain kernel's comes first.
 std::vector<Drawn> draw_on_all(const BrickStore& store, const RenderRequest& request) {
   const std::int64_t here = hwy::SupportedTargets();
   std::vector<Drawn> all;
@@ -54,7 +54,7 @@ std::vector<Drawn> draw_on_all(const BrickStore& store, const RenderRequest& req
   return all;
 }
 
-/// What the kernel of the system says of the first processor.
+/// Whether /proc/cpuinfo lists all `flags` for the first processor.
 bool processor_has(std::initializer_list<const char*> flags) {
   std::ifstream file("/proc/cpuinfo");
   std::string line;
@@ -65,8 +65,8 @@ bool processor_has(std::initializer_list<const char*> flags) {
   });
 }
 
-// A release of Highway that brought new targets once turned the vector kernels off, and images took twelve
-// times as long without a word.
+// A Highway release that added targets once disabled the vector kernels: images silently took twelve times as
+// long.
 TEST(InstructionSets, ChosenIsTheBestThatTheProcessorHas) {
   const char* best = "";
   if (processor_has({"sse4_1", "sse4_2", "aes", "pclmulqdq"})) best = "SSE4";
@@ -98,7 +98,7 @@ TEST(InstructionSets, AllDrawTheSameImage) {
           const double d = difference(drawn.image, all[0].image).max;
           if (op != Operator::first_hit) worst = std::max(worst, d);
           if (op == Operator::first_hit) {
-            // The last bit of a value decides which sample is not clear.
+            // The last bit of a value decides which sample is the first visible one.
             EXPECT_LE(difference(drawn.image, all[0].image, 3e-5).pixels_over, 3)
                 << drawn.instruction_set << ", texels " << int(type) << ", filter " << int(filter);
           } else {
@@ -119,7 +119,7 @@ TEST(InstructionSets, AllRoundSamplesOfBytesAlike) {
     RenderRequest request = request_for(texture, usual_camera(45, 39), 45, 39, 90);
     request.op = op;
     request.filter = Filter::linear_8_bit;
-    // Every byte has a colour that is not like its neighbours'.
+    // Every byte has a colour that differs from its neighbours'.
     TransferFunction table;
     for (int i = 0; i < 256; ++i) {
       const float opacity = 0.02F * float(i % 2);
@@ -130,7 +130,7 @@ TEST(InstructionSets, AllRoundSamplesOfBytesAlike) {
     const std::vector<Drawn> all = draw_on_all(filled(texture), request);
     for (const Drawn& drawn : all)
       EXPECT_LE(difference(drawn.image, all[0].image).max, 3e-5) << drawn.instruction_set;
-    // Places in float and in double differ, and some are rounded to the other of two steps.
+    // Positions in float and in double differ, so that some samples are rounded to a different step.
     const double rounded_apart = difference(all[0].image, exact).rms;
     EXPECT_LE(rounded_apart, 1e-3) << "operator " << int(op);
     request.filter = Filter::linear;
@@ -139,7 +139,7 @@ TEST(InstructionSets, AllRoundSamplesOfBytesAlike) {
 }
 
 TEST(InstructionSets, MixedRanksStillCountEverySampleOnce) {
-  // Ranks on different machines must agree to the bit whose a sample is.
+  // Ranks on different machines must agree exactly on which rank owns a sample.
   const Texture texture = noise(describe({37, 29, 41}, TexelType::u8), 71);
   const RenderRequest request = request_for(texture, usual_camera(45, 39), 45, 39, 300);
   FrameCounts whole, parts;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A transfer function for another distance between samples is that of the same medium.
+// A transfer function that is corrected for another sample distance describes the same medium.
 #include "volume/opacity_correction.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that end behind the sample that makes them opaque to a limit.
+// Rays that end behind the sample at which their opacity reaches a limit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ Image image_of(const Texture& texture, const RenderRequest& request, FrameCounts
 }
 
 TEST(OpacityLimit, EndsRaysWhereTheReferenceEndsThem) {
-  // Rounding may move a ray that comes close to the limit by one sample.
+  // Rounding may move the end of a ray close to the limit by one sample.
   constexpr double bound = 1e-4;
   constexpr int moved = width * height / 200;
   for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32, TexelType::rgba8})
@@ -62,7 +62,7 @@ TEST(OpacityLimit, EndsLitRaysLikeOthers) {
   request.steps.emplace();
   request.steps->metric = {40, 0, 0, 0, 36, 0, 0, 0, 28};
   const Image unlit = image_of(texture, request);
-  Light light;  // that changes nothing
+  Light light;  // without any effect
   light.ambient = {1, 1, 1};
   light.diffuse = light.specular = {0, 0, 0};
   request.light = light;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the ray caster leaves out changes no image, and what it counts adds up.
+// What the ray caster skips does not change any image, and its counts add up.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,7 +45,8 @@ TEST(Optimizations, OfEmptyBricksChangesNoImage) {
   for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32, TexelType::rgba8})
     for (const Operator op : {Operator::over, Operator::max, Operator::min, Operator::add, Operator::first_hit})
       for (const Filter filter : {Filter::linear, Filter::nearest}) {
-        // Half of the volume is empty space: values under the table's foot, or (of minima) none at all.
+        // Half of the volume is empty space: values below the table's lowest visible value, or NaN for minima
+        // of floats.
         const Texture texture = sampled(describe({70, 66, 50}, type), [&](const Vec3& t) {
           const double r = std::hypot(t[0] - 0.3, t[1] - 0.35, t[2] - 0.6);
           if (r < 0.2) return 1 - r;
@@ -110,7 +111,7 @@ TEST(Optimizations, OfDominatedSamplesNeedsColoursThatRise) {
   RenderRequest request = request_for(texture, usual_camera(64, 64), 64, 64, 200);
   request.op = Operator::max;
   const BrickStore store = filled(texture);
-  // As a viewer's table of bytes has them: rising, with equal entries side by side.
+  // Like a viewer's 8-bit transfer function: increasing, with runs of equal entries.
   TransferFunction rising;
   for (int i = 0; i < 256; ++i) {
     const float value = float(i * i / 255) / 255;
@@ -120,7 +121,7 @@ TEST(Optimizations, OfDominatedSamplesNeedsColoursThatRise) {
   const ImageAndCounts usual = draw(store, request);
   request.optimizations.dominated_samples = false;
   const ImageAndCounts all = draw(store, request);
-  const bool plain = std::string_view(instruction_set()) == "scalar";  // which leaves out empty bricks alone
+  const bool plain = std::string_view(instruction_set()) == "scalar";  // it skips empty bricks only
   EXPECT_GT(usual.counts.dominated_samples, plain ? 0 : left_in_empty_bricks(all.counts));
   EXPECT_EQ(all.counts.dominated_samples, 0U);
   EXPECT_LE(difference(usual.image, all.image).max, 1e-6);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order of accuracy: how fast the error of the volume rendering integral falls as steps are halved. It is a
-// slope over at least four halvings and many rays, of smooth procedural fields under smooth tables; on voxels
-// fields have kinks, and no order is promised. (Etiene et al. 2014 verify renderers by it.)
+// Order of accuracy: how fast the error of the volume rendering integral decreases when steps are halved. It is
+// a slope over at least four halvings and many rays, for smooth procedural fields and smooth transfer
+// functions; voxel fields have kinks, for which no order is guaranteed. (Etiene et al. 2014 verify renderers in
+// this way.)
 #include <gtest/gtest.h>
 
 #include <array>
@@ -29,7 +30,7 @@ std::array<double, 3> colour(double s) {
   return {0.2 + 0.7 * s, 0.9 - 0.8 * s * s, 0.5 + 0.4 * std::sin(3 * s)};
 }
 
-/// What a homogeneous layer as thick as one of `count` steps shows.
+/// Colour and opacity of a homogeneous layer as thick as one of `count` steps.
 TransferFunction table_for(int count) {
   constexpr int entries = 4096;
   TransferFunction table;
@@ -61,11 +62,11 @@ Vec3 on_ray(const RenderRequest& request, int x, int y, double way) {
           request.region.low[2] + way * (request.region.high[2] - request.region.low[2])};
 }
 
-/// The integral along every ray, which is one unit long: Gauss-Legendre in pieces so short that double
-/// precision is what limits it.
+/// The integral along every ray of unit length: Gauss-Legendre on pieces short enough that only double
+/// precision limits it.
 ReferenceImage integral(const ScalarField& field, const RenderRequest& request) {
   constexpr int pieces = 2000;
-  // Nodes of order 6, and behind each the integral of the extinction by another such rule up to it.
+  // Nodes of order 6; the extinction up to each node is integrated by the same rule.
   constexpr std::array<double, 3> nodes{0.1127016653792583, 0.5, 0.8872983346207417};
   constexpr std::array<double, 3> weights{5.0 / 18, 8.0 / 18, 5.0 / 18};
   ReferenceImage image{request.window, {}};
@@ -149,7 +150,7 @@ TEST(Order, OfSamplesInTheMiddleOfTheirStepsIsTwo) {
 }
 
 TEST(Order, OfSamplesAtTheEndsOfTheirStepsIsOne) {
-  // A hair behind the beginning, or the end of the ray would be a sample too many.
+  // Slightly after the beginning of the step: otherwise the end of the ray would be an additional sample.
   const auto errors = errors_on_waves(1e-9, Method::post_classified);
   print("samples where steps begin", errors);
   EXPECT_GE(order(errors), 0.8);
@@ -162,7 +163,7 @@ TEST(Order, OfPreIntegratedSegmentsIsTwo) {
   EXPECT_GE(order(errors), 1.8);
 }
 
-/// A field that voxels hold exactly, through the ray caster itself.
+/// A field that voxels represent exactly, drawn by the ray caster itself.
 TEST(Order, OfTheRayCasterOnAFieldWithoutKinks) {
   const ScalarField ramp = linear_field({0.15, 0.2, 0.55}, 0.05);
   Texture texture = sampled(describe({33, 29, 31}, TexelType::f32), ramp);

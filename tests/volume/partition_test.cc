@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One rank or many: the same image.
+// One rank or many give the same image.
 #include <gmock/gmock.h>
 
 #include <numeric>
@@ -117,7 +117,7 @@ TEST(Partition, HoldsWhenMostOfTheVolumeIsBehindTheEye) {
 }
 
 TEST(Partition, HoldsWhenPlanesRunAgainstTheDepth) {
-  // Front to back by plane index even where the depth range is reversed.
+  // Planes go front to back by index even if the depth range is reversed.
   const Texture texture = noise(describe({37, 29, 41}, TexelType::u8), 35);
   Matrix4 reversed = usual_camera(45, 39);
   for (int k = 8; k < 12; ++k) reversed[k] = -reversed[k];
@@ -165,7 +165,8 @@ TEST(KdTree, TilesTheLatticeWithBoxesOnBlockFaces) {
   EXPECT_THROW(KdTree(describe({4, 4, 4}, TexelType::u8), max_ranks + 1), std::invalid_argument);
 }
 
-/// Along any ray, boxes entered earlier must come earlier: checked on points of the ray, from near to far.
+/// Along any ray, boxes that are entered earlier must come earlier: checked at points of the ray, from near to
+/// far.
 TEST(KdTree, OrderFollowsEveryRay) {
   std::mt19937 random(36);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -204,7 +205,7 @@ TEST(KdTree, OrderFollowsEveryRay) {
 }
 
 TEST(KdTree, OrderStandsTheNoiseOfAFittedParallelCamera) {
-  // A fit leaves about 1e-9 in the last row of a parallel projection, of either sign.
+  // A fit leaves about 1e-9, of either sign, in the last row of a parallel projection.
   const VolumeDescription volume = describe({64, 48, 80}, TexelType::u8);
   const KdTree tree(volume, 8);
   const Matrix4 clean =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A volume rendered whole, and in the parts of several ranks, by any ray caster.
+// Renders a volume whole, and in the parts of several ranks, with any ray caster.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace understudy::volume::testing {
 
-/// Draws what one rank holds, as raycast() does.
+/// Draws one rank's bricks, as raycast() does.
 using DrawBricks = std::function<void(const BrickStore&, const RenderRequest&, Image&, FrameCounts&)>;
 
 struct Whole {
@@ -31,7 +31,7 @@ inline Whole render_whole(const Texture& texture, const RenderRequest& request,
   return whole;
 }
 
-/// Every rank renders its footprint alone; the images are composed in visibility order.
+/// Each rank renders its own footprint; the images are composited in visibility order.
 inline Whole render_parts(const Texture& texture, const RenderRequest& request, const KdTree& tree,
                           const DrawBricks& draw = raycast) {
   Whole whole{Image(request.window), {}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pre-integrated segments: their table against quadrature, their images against the volume rendering
+// Pre-integrated segments: their table compared with quadrature, their images with the volume rendering
 // integral.
 #include "volume/raycast/pre_integration.h"
 
@@ -148,7 +148,7 @@ TEST(PreIntegration, CutAtBricksDependsOnTheBricks) {
   for (const int ranks : {64, 512}) {
     const double seamless = difference(drawn_in_parts(texture, request, ranks, counts), uncut).max;
     RenderRequest cut = request;
-    cut.cut_at_bricks = 8;  // the ranks' own are smaller
+    cut.cut_at_bricks = 8;  // the ranks' own bricks are smaller
     const Difference d = difference(drawn_in_parts(texture, cut, ranks, counts), uncut);
     std::printf("%d bricks: cut at their faces max %.2e, rms %.2e; uncut max %.2e\n", ranks, d.max, d.rms,
                 seamless);
@@ -160,7 +160,7 @@ TEST(PreIntegration, CutAtBricksDependsOnTheBricks) {
 }
 
 TEST(PreIntegration, CutAtBricksOfOneRankIsCutAsByRanks) {
-  // 64 ranks have the 4 x 4 x 4 bricks of 16 cells that one rank is told to cut at.
+  // 64 ranks have the same 4 x 4 x 4 bricks of 16 cells at whose faces one rank is told to cut.
   Texture texture = sampled(describe({65, 65, 65}, TexelType::u16), marschner_lobb_field());
   RenderRequest request = request_on_steps(texture);
   request.steps->metric = {64, 0, 0, 0, 64, 0, 0, 0, 64};
@@ -179,7 +179,7 @@ TEST(PreIntegration, CutAtBricksOfOneRankIsCutAsByRanks) {
               difference(by_bricks, uncut).max, difference(by_bricks, by_ranks).max);
   EXPECT_LE(difference(by_bricks, by_ranks).max, 1e-6);
   EXPECT_GT(difference(by_bricks, uncut).max, 1e-5);
-  // More ranks make no more cuts where theirs are among the bricks'.
+  // More ranks add no cuts if their faces are among the bricks' faces.
   EXPECT_LE(difference(drawn_in_parts(texture, cut, 8, counts), by_bricks).max, 1e-6);
   VolumeDescription large = texture.description;
   large.size = {1024, 1024, 1024};

@@ -30,7 +30,7 @@ Image mirrored(const Image& image) {
   return result;
 }
 
-/// By how much the brightest colour of the table is less than what the image shows of it.
+/// By how much the image's colour exceeds the brightest colour of the transfer function.
 double colour_excess(const RandomScene& scene, const Image& image) {
   std::array<double, 3> brightest{1, 1, 1};
   if (const auto* table = std::get_if<TransferFunction>(&scene.request.classification)) {
@@ -53,11 +53,11 @@ void expect_of(const RandomScene& scene, int ranks, const PropertyTrials& asked,
   double largest = 0;
   for (const float v : image.rgba) {
     ASSERT_TRUE(std::isfinite(v));
-    // Where no sample lies, the least is the largest number.
+    // Without a sample, a minimum is the largest float.
     if (v < 1e30F) largest = std::max(largest, double(std::abs(v)));
   }
   worst.shown += largest > 0 ? 1 : 0;
-  // Sums are as exact as they are large.
+  // The error of sums grows with their size.
   const double unit = std::max(1.0, largest);
 
   const Image parts = render_parts(scene.texture, request, ranks, draw).image;
@@ -65,7 +65,7 @@ void expect_of(const RandomScene& scene, int ranks, const PropertyTrials& asked,
   worst.partition = std::max(worst.partition, apart);
   EXPECT_LE(apart, asked.apart) << ranks << " ranks";
 
-  // Of wild texels and of the nearest ones, the last bit of a position decides which value a sample has.
+  // For wild texels or nearest filtering, the last bit of a position decides which value is sampled.
   if (!scene.wild_texels && request.filter == Filter::linear) {
     RenderRequest other = request;
     for (std::size_t k = 0; k < 4; ++k) other.texture_to_clip[k] = -other.texture_to_clip[k];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of every image, on random scenes: it is finite, the same for any partition, mirrored when the
-// scene is, and of a coloured medium it shows no opacity above 1 and no colour brighter than the medium's.
+// Properties of every image of a random scene: it is finite, the same for any partition, and mirrored when the
+// scene is. An image of a coloured medium has no opacity above 1 and no colour brighter than the medium's.
 #pragma once
 
 #include "tests/volume/parts.h"
@@ -10,11 +10,11 @@ namespace understudy::volume::testing {
 struct PropertyTrials {
   const char* renderer = "";
   int trials = 0;
-  bool may_refuse = false;  ///< segments, and texels that are no numbers
-  double apart = 1e-5;  ///< by which images of two partitions may differ, and each unit of mirrored steepness
+  bool may_refuse = false;  ///< scenes with segments or wild texels
+  double apart = 1e-5;  ///< tolerance between two partitions, and per unit of steepness between mirror images
 };
 
-/// Expects it of `trials` scenes. Prints the seed and the worst values; a failure says which scene it was.
+/// Checks these properties on `trials` scenes. Prints the seed and the worst values; a failure names its scene.
 void expect_properties(const PropertyTrials& asked, const DrawBricks& draw);
 
 }  // namespace understudy::volume::testing

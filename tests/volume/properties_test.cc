@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of every image, on the CPU.
+// Properties of every image, drawn on the CPU.
 #include "tests/volume/properties.h"
 
 #include <gtest/gtest.h>

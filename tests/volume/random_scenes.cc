@@ -65,7 +65,7 @@ void make_wild(std::mt19937& random, Texture& texture) {
     }
 }
 
-/// Opacities of every size, and steps between them; colours of a medium, or glow beyond that.
+/// Opacities of all magnitudes, and steps between them; colours of a medium, or emission beyond that.
 TransferFunction random_table(std::mt19937& random, bool medium) {
   TransferFunction table;
   const int entries = one_of(random, std::array{2, 3, 17, 256, 300});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes that nobody thought of: random fields, tables, cameras and samples, the same for the same seed.
+// Scenes with random fields, transfer functions, cameras and samples, the same for the same seed.
 #pragma once
 
 #include <random>
@@ -10,19 +10,19 @@
 
 namespace understudy::volume::testing {
 
-/// The environment's UNDERSTUDY_TEST_SEED, or else always the same.
+/// UNDERSTUDY_TEST_SEED of the environment, or a fixed default.
 unsigned test_seed();
 
 struct RandomScene {
   Texture texture;
   RenderRequest request;
-  /// Colour is that of a medium: at most opacity times the brightest colour.
+  /// Colour is at most opacity times the brightest colour.
   bool coloured_medium = false;
-  /// Among the texels are values that are no numbers, infinite, huge or denormal.
+  /// Some texels are NaN, infinite, huge or denormal.
   bool wild_texels = false;
-  /// Most that colour or opacity change a unit of the field's value, beside an even ramp's 1.
+  /// Largest change of colour or opacity per unit of the field's value; 1 for an even ramp.
   double steepness = 0;
-  std::string text;  ///< of what kind, in a line
+  std::string text;  ///< one line that describes the scene
 };
 
 RandomScene random_scene(std::mt19937& random);

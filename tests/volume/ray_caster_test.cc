@@ -26,7 +26,7 @@ ReferenceImage reference(const Texture& texture, const RenderRequest& request) {
   return slice_sum(texture_field(texture.description, request.filter, texture.texels), request, request.window);
 }
 
-/// Renders both ways and expects them to agree; returns the difference.
+/// Renders with both, expects them to agree within `bound`, and returns the difference.
 Difference expect_like_reference(const Texture& texture, const RenderRequest& request, double bound,
                                  const char* what) {
   const ReferenceImage expected = reference(texture, request);
@@ -76,7 +76,7 @@ TEST(RayCaster, EqualsTheSlicesForEveryOperator) {
     }
 }
 
-/// A red haze from one corner to the other, with a kink.
+/// A red haze that increases from one corner to the opposite one, with a kink.
 Fog red_haze() {
   Fog fog{.normal = {0.5, 0.6, -0.4}, .offset = 0.3, .entries = {}};
   for (int i = 0; i < 65; ++i) {
@@ -251,7 +251,7 @@ TEST(RayCaster, HidesSamplesBehindTheDepthImage) {
 }
 
 TEST(RayCaster, SeesADepthTieAsTheDepthFunctionDoes) {
-  // A parallel view down z with a plane exactly at window depth one half.
+  // A parallel view along z with a plane exactly at window depth one half.
   const Texture texture = sampled(describe({8, 8, 8}, TexelType::u8), constant_field(1));
   RenderRequest request = request_for(texture, {2, 0, 0, -1, 0, 2, 0, -1, 0, 0, 2, -1, 0, 0, 0, 1}, 4, 4, 1);
   request.planes = {{0, 0, 1}, 0.5, 1, 1};
@@ -271,7 +271,7 @@ TEST(RayCaster, ReachesTheAnalyticFieldsThroughTheTexture) {
 }
 
 TEST(RayCaster, KeepsThinFog) {
-  // Each of 1000 layers has an opacity far below what a float next to 1 can tell.
+  // Each of 1000 layers has an opacity far below the spacing of floats next to 1.
   const Texture texture = sampled(describe({16, 16, 16}, TexelType::u8), constant_field(1));
   RenderRequest request = request_for(texture, {2, 0, 0, -1, 0, 2, 0, -1, 0, 0, 2, -1, 0, 0, 0, 1}, 8, 8, 1000);
   TransferFunction fog;
@@ -337,7 +337,7 @@ TEST(RayCaster, SkipsEmptyBricksWithoutChangingTheImage) {
 }
 
 TEST(RayCaster, CountsTheSamplesOfTheSlices) {
-  // Every texel alike and hardly opaque: the sum of alphas under `add` counts the samples.
+  // All texels are equal and almost transparent: the sum of alphas under `add` counts the samples.
   const Texture texture = sampled(describe({19, 23, 13}, TexelType::u8), constant_field(1));
   RenderRequest request = request_for(texture, usual_camera(41, 37), 41, 37, 30);
   TransferFunction one;

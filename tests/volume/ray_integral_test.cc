@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The integral without step size against closed forms, before anything is judged by it.
+// Checks the integral without step size against closed forms before it serves as a reference.
 #include "volume/reference/ray_integral.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// A ray of one stretch whose value rises from `begin` to `end`.
+/// A ray of one stretch whose value increases from `begin` to `end`.
 std::vector<Stretch> ramp(double begin, double end, double length) {
   Stretch stretch;
   stretch.length = length;
@@ -25,7 +25,7 @@ std::vector<Stretch> ramp(double begin, double end, double length) {
   return {stretch};
 }
 
-/// A field that is its own coordinate along a ray of `length` in `pieces` equal stretches.
+/// A field that equals the position along a ray of `length`, in `pieces` equal stretches.
 std::vector<Stretch> distance_ray(double length, int pieces) {
   std::vector<Stretch> ray;
   for (int i = 0; i < pieces; ++i) {
@@ -89,7 +89,7 @@ TEST(RayIntegral, ShowsTheFirstOfTwoOpaqueLayers) {
 }
 
 TEST(RayIntegral, OfALayerIsTheLayersSample) {
-  // A homogeneous way as long as the distance between samples shows exactly one sample.
+  // A homogeneous path as long as the sample distance has exactly the opacity of one sample.
   for (const float opacity : {1e-9F, 1e-4F, 0.3F, 0.999F, 0.99999994F}) {
     TransferFunction function;
     function.entries = {{0.5F * opacity, 0, opacity, opacity}, {0.5F * opacity, 0, opacity, opacity}};
@@ -100,7 +100,8 @@ TEST(RayIntegral, OfALayerIsTheLayersSample) {
 }
 
 TEST(RayIntegral, OfOpacityThatRisesToOne) {
-  // extinction = -log(1 - t) over [0, 1]: optical depth 1, although it is infinite at the end.
+  // extinction = -log(1 - t) over [0, 1]: the optical depth is 1, although the extinction is infinite at the
+  // end.
   TransferFunction function;
   function.entries = {{0, 0, 0, 0}, {0, 0, 0, 1}};
   EXPECT_NEAR(ray_integral(ramp(0, 1, 1), Medium::of_samples(function, 1)).optical_depth, 1, 1e-12);
@@ -108,7 +109,7 @@ TEST(RayIntegral, OfOpacityThatRisesToOne) {
 }
 
 TEST(RayIntegral, OfLayersThatAreAlmostOpaque) {
-  // An opacity's last bit is many of its transparency: what cannot be told apart must not be bisected for ever.
+  // The last bit of such an opacity is a large part of its transparency: bisection must stop at equal values.
   TransferFunction function;
   function.entries.assign(256, {0, 0, 0, 0});
   for (std::size_t i = 158; i < 169; ++i) function.entries[i] = {0.5F, 0, 0, 0.9999F};
@@ -135,7 +136,7 @@ TEST(RayIntegral, KeepsThinFog) {
 }
 
 TEST(RayIntegral, FindsASpikeThinnerThanAnySample) {
-  // A table spike of width 1e-6 in value and depth 1: the ray crosses it in a millionth of its length.
+  // A spike of width 1e-6 in value and optical depth 1: the ray crosses it within a millionth of its length.
   std::vector<Rate> entries(1'000'001);
   entries[500'000] = {{2e6, 0, 0}, 1e6};
   const RayIntegral sum = ray_integral(ramp(0, 1, 1), Medium::of_rates(0, 1, entries));
@@ -173,8 +174,8 @@ TEST(RayIntegral, DoesNotDependOnHowTheRayIsCut) {
 }
 
 TEST(RayIntegral, IsWhereSumsOfEverFinerSlicesLead) {
-  // The viewer's own sum over ever more planes, its opacities for ever thinner layers, tends to the integral
-  // with order 1 at least; both take the field from the same texture.
+  // The viewer's own sum over more and more planes, with opacities for thinner and thinner layers, converges to
+  // the integral with order 1 or better. Both take the field from the same texture.
   const Texture texture = sampled(describe({13, 11, 9}, TexelType::f32), marschner_lobb_field());
   const Field field = texture_field(texture.description, Filter::linear, texture.texels);
   TransferFunction function;

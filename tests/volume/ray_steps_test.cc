@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples on constant steps along the rays, as ray casters in a fragment shader take them: against the
-// double-precision reference, and the same for any partition.
+// Samples on constant steps along the rays, as ray casters in a fragment shader take them, compared with the
+// double-precision reference; the image is the same for any partition.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -18,7 +18,7 @@
 namespace understudy::volume::testing {
 namespace {
 
-/// Steps of `length` in a space that is stretched and sheared against texture space.
+/// Steps of `length` in a space that is stretched and sheared relative to texture space.
 RaySteps steps_of(double length) {
   RaySteps steps;
   steps.metric = {1.0 / length, 0.1 / length, 0, 0, 0.8 / length, 0, 0.2 / length, 0, 1.3 / length};
@@ -36,9 +36,9 @@ struct Case {
   double first;
   bool divided;
   Operator op;
-  bool offset = false;                      ///< every ray begins at a place of its own
-  std::optional<double> counted_from = {};  ///< RaySteps' own
-  bool at_least_one = false;                ///< likewise
+  bool offset = false;                      ///< every ray has its own offset
+  std::optional<double> counted_from = {};  ///< as in RaySteps
+  bool at_least_one = false;                ///< as in RaySteps
 };
 
 std::vector<Case> cases() {
@@ -78,7 +78,7 @@ RenderRequest request_of(const Texture& texture, const Case& c) {
   request.op = c.op;
   request.steps->counted_from = c.counted_from;
   request.steps->at_least_one = c.at_least_one;
-  // As long as the box is deep: most rays are too short for their first sample.
+  // Steps as long as the box is deep: most rays are too short for their first sample.
   if (c.at_least_one)
     for (double& number : request.steps->metric) number /= 20;
   if (!c.counted_from && !c.at_least_one) request.region = {{0.03, 0, 0.05}, {0.97, 0.9, 1}};
@@ -93,7 +93,7 @@ void compose(Operator op, float* front, const float* back) {
                                      : std::max(front[k], back[k]);
 }
 
-/// A sample that lies on the very end of its ray may count here and not there.
+/// A sample exactly at the end of its ray may count in one image and not in the other.
 constexpr int pixels_at_the_end = 3;
 
 TEST(RaySteps, GiveTheImageOfTheReference) {
@@ -111,7 +111,7 @@ TEST(RaySteps, GiveTheImageOfTheReference) {
       std::printf("%s: largest %.1e, rms %.1e\n", c.name, d.max, d.rms);
       EXPECT_LE(d.pixels_over, pixels_at_the_end) << c.name;
       EXPECT_LE(d.rms, 3e-4) << c.name;
-      // Another rule gives another image: the comparison can fail.
+      // Another rule gives another image, so the comparison can fail.
       request.steps->first += c.divided ? 0.3 : 0.5;
       if (c.op == Operator::over) {
         EXPECT_GT(difference(image, slice_sum(field, request, request.window)).rms, 1e-3) << c.name;
@@ -126,7 +126,7 @@ TEST(RaySteps, EndAtOpaqueGeometryAndClipPlanes) {
   const BrickStore store = filled(texture);
   for (const double past : {0.0, 1.0})
     for (const Case& c : cases()) {
-      if (c.counted_from) continue;  // know no clip planes
+      if (c.counted_from) continue;  // does not support clip planes
       RenderRequest request = request_of(texture, c);
       request.steps->past_depth = past;
       if (!c.at_least_one) request.clip_planes = {{{1, 0.3, -0.2}, -0.2}};
@@ -158,7 +158,7 @@ TEST(RaySteps, OfRaysThatEnterBehindTheFarPlaneHaveNoSample) {
   for (const Case& c : cases()) {
     if (!c.at_least_one) continue;
     RenderRequest request = request_of(texture, c);
-    // The far plane through the volume: z grows until it is w at less depth.
+    // Moves the far plane into the volume: z reaches w at a smaller depth.
     for (std::size_t k = 0; k < 4; ++k)
       request.texture_to_clip[8 + k] += 0.04 * request.texture_to_clip[12 + k];
     Image image(request.window);
@@ -194,7 +194,7 @@ TEST(RaySteps, GiveTheSameImageForAnyPartition) {
   std::printf("2 to 9 ranks against 1: largest difference %.2e\n", worst);
 }
 
-/// What a maximum leaves out changes nothing.
+/// What a maximum projection skips does not change the image.
 TEST(RaySteps, UnderARisingTableAMaximumPassesByWhatAddsNothing) {
   for (const float lowest : {0.0F, 1.0F}) {
     Texture texture = noise(describe({64, 64, 64}, TexelType::u8, Wrap::edge), 9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reference must itself agree with closed forms before others are judged by it.
+// The reference must itself agree with closed forms before other results are compared with it.
 #include <gtest/gtest.h>
 
 #include "tests/volume/scenes.h"
@@ -8,7 +8,7 @@
 namespace understudy::volume::testing {
 namespace {
 
-/// A parallel view down +z, plane i at texture depth (i + 1/2) / planes.
+/// A parallel view along +z with plane i at texture depth (i + 1/2) / planes.
 RenderRequest straight_view(int planes) {
   RenderRequest r;
   r.texture_to_clip = {2, 0, 0, -1, 0, 2, 0, -1, 0, 0, 2, -1, 0, 0, 0, 1};
@@ -58,7 +58,7 @@ TEST(SliceSum, TakesExtremesPerComponent) {
 }
 
 TEST(SliceSum, SeesASphereInPerspectiveAsAnalysisDoes) {
-  // Under `add` a pixel counts the planes inside a ball, whose chord along a ray is known.
+  // Under `add`, a pixel counts the planes inside a ball, whose chord along a ray is known.
   RenderRequest r;
   r.viewport = r.window = {0, 0, 9, 9};
   const Vec3 eye{0, 0, 2};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A store whose cells change holds what a new one would.
+// A store whose cells change holds the same blocks as a new one.
 #include <gmock/gmock.h>
 
 #include <cstring>
@@ -58,7 +58,7 @@ TEST(Reshape, ALongWayOfBoxesEndsWithTheBlocksOfANewStore) {
       VolumeDescription description = describe({37, 29, 41}, type, wrap);
       description.ghost_layer = trial++ % 3;
       Texture texture = noise(description, seed);
-      // Half of it is even, so that blocks are shared.
+      // Half of the volume is constant, so that blocks are shared.
       std::fill(texture.texels.begin() + std::ptrdiff_t(texture.texels.size() / 2), texture.texels.end(),
                 std::byte(0));
       const TexelBox lattice = cell_lattice(description).box();
@@ -72,10 +72,10 @@ TEST(Reshape, ALongWayOfBoxesEndsWithTheBlocksOfANewStore) {
         expect_same(store, filled(texture, cells));
         most = std::max(most, store.bytes());
       }
-      // Places that were given up are used again: there are never more than a whole volume's, and a chunk.
+      // Released storage is reused: the total never exceeds that of a whole volume and one chunk.
       EXPECT_LE(most, 2 * whole.bytes());
 
-      // Changes reach the blocks that came, and images are those of a new store.
+      // Changes reach the added blocks, and images equal those of a new store.
       store.reshape(lattice, [&](const BrickStore::BlockPlace& place) { return whole.packed(place); });
       Texture changed = noise(description, seed + 1);
       std::vector<std::size_t> blocks;
@@ -99,7 +99,7 @@ TEST(Reshape, RefusesWhatCannotBe) {
   BrickStore unfinished(texture.description, cell_lattice(texture.description).box());
   EXPECT_THROW(unfinished.reshape({{0, 0, 0}, {8, 8, 8}}, never), std::logic_error);
   BrickStore part = filled(texture, {{0, 0, 0}, {8, 8, 8}});
-  EXPECT_THROW(part.reshape({{0, 0, 0}, {16, 8, 8}}, never), std::logic_error);  // no block has three bytes
+  EXPECT_THROW(part.reshape({{0, 0, 0}, {16, 8, 8}}, never), std::logic_error);  // no block has 3 bytes
 }
 
 }  // namespace

@@ -50,16 +50,16 @@ inline Matrix4 look_at(const Vec3& eye, const Vec3& centre, const Vec3& up) {
       -forward[0], -forward[1], -forward[2], dot(forward, eye), 0,        0,        0,        1};
 }
 
-/// The volume as a unit cube around the world's origin.
+/// Places the volume as a unit cube around the origin of world space.
 inline Matrix4 unit_cube() {
   return {1, 0, 0, -0.5, 0, 1, 0, -0.5, 0, 0, 1, -0.5, 0, 0, 0, 1};
 }
 
-/// Planes that face the viewer, front to back, about one per `texels` texels of a cube of 1 / `texels`; no
-/// plane falls on a corner of the region.
+/// `count` planes that face the viewer, front to back over the whole region; no plane touches a corner of the
+/// region.
 inline SlicePlanes facing_planes(const Matrix4& m, const Box& region, int count) {
   SlicePlanes planes;
-  planes.normal = {m[12], m[13], m[14]};  // distance from the eye is constant on these
+  planes.normal = {m[12], m[13], m[14]};  // planes of constant distance from the eye
   if (length(planes.normal) < 1e-9) planes.normal = {m[8], m[9], m[10]};
   double low = 1e300, high = -1e300;
   for (int corner = 0; corner < 8; ++corner) {
@@ -108,7 +108,7 @@ inline Matrix4 usual_camera(int width, int height) {
 struct Difference {
   double max = 0;
   double rms = 0;
-  int pixels_over = 0;  ///< pixels further apart than the given bound
+  int pixels_over = 0;  ///< pixels that differ by more than the given bound
 };
 
 template <typename A, typename B>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The double-precision reference against a second one that shares no code with it: rays, field, table and
-// integral are written anew here, in long double, and the integral is found by bisection alone.
+// Compares the double-precision reference with a second one that shares no code with it: rays, field, transfer
+// function and integral are implemented separately in long double, and the integral is computed by bisection
+// alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ namespace {
 using Real = long double;
 using Point = std::array<Real, 3>;
 
-/// A cube of texels of 32-bit floats, repeated beyond its sides by the nearest.
+/// A cube of 32-bit float texels; outside, the nearest texel is repeated.
 struct Grid {
   std::array<int, 3> size{};
   std::vector<float> values;
@@ -54,7 +55,7 @@ struct Grid {
   }
 };
 
-/// Of a table's premultiplied entries over [0, 1], for a way of length 1.
+/// Rates per unit length, from premultiplied entries over [0, 1].
 struct Rates {
   Real extinction = 0;
   std::array<Real, 3> source{};
@@ -74,7 +75,7 @@ Rates rates_at(const std::vector<Rgba>& entries, Real value) {
   return rates;
 }
 
-/// What a part of a ray shows, and lets through.
+/// Colour and opacity of a part of a ray.
 struct Shown {
   std::array<Real, 3> colour{};
   Real opacity = 0;
@@ -97,14 +98,14 @@ class Integral {
   Integral(const Grid& grid, const std::vector<Rgba>& entries, Point from, Point to, Real length)
       : grid_(grid), entries_(entries), from_(from), to_(to), length_(length) {}
 
-  /// Between two shares of the way.
+  /// Integral between the ray parameters a and b, in [0, 1].
   Shown between(Real a, Real b, int depth = 0) const {
     const Real middle = (a + b) / 2;
     const Shown whole = layer(a, b);
     const Shown halves = layer(a, middle).before(layer(middle, b));
     constexpr int least = 9, most = 34;
     if (depth >= most || (depth >= least && halves.far_from(whole) < Real(1e-8) * (b - a))) {
-      // The midpoint rule errs by a quarter of it on halves.
+      // On halves, the midpoint rule has a quarter of the error.
       Shown better = halves;
       for (std::size_t k = 0; k < 3; ++k) better.colour[k] += (halves.colour[k] - whole.colour[k]) / 3;
       better.opacity += (halves.opacity - whole.opacity) / 3;
@@ -148,7 +149,7 @@ std::array<Real, 4> solved(std::array<std::array<Real, 5>, 4> rows) {
   return {rows[0][4] / rows[0][0], rows[1][4] / rows[1][1], rows[2][4] / rows[2][2], rows[3][4] / rows[3][3]};
 }
 
-/// Texture space at a depth behind the middle of a pixel.
+/// The point in texture space at the given depth behind a pixel centre.
 Point behind_pixel(const RenderRequest& request, int x, int y, Real depth) {
   const Real across = 2 * (x + Real(0.5)) / request.viewport.width - 1;
   const Real up = 2 * (y + Real(0.5)) / request.viewport.height - 1;
@@ -162,7 +163,7 @@ Point behind_pixel(const RenderRequest& request, int x, int y, Real depth) {
   return {p[0] / p[3], p[1] / p[3], p[2] / p[3]};
 }
 
-/// The part of the ray within the unit cube.
+/// The part of the ray inside the unit cube.
 std::optional<std::array<Point, 2>> ray_in_cube(const RenderRequest& request, int x, int y) {
   const Point near = behind_pixel(request, x, y, -1), far = behind_pixel(request, x, y, 1);
   Real enter = 0, leave = 1;

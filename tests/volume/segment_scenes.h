@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Requests with surfaces, light and pre-integration, drawn by one rank or by several.
+// Requests with surfaces, light and pre-integration, drawn by one rank or several.
 #pragma once
 
 #include "tests/volume/scenes.h"
@@ -14,8 +14,8 @@
 
 namespace understudy::volume::testing {
 
-/// Some 40 x 34 pixels, steps of about a texel of a volume of 40 texels, in a space stretched against texture
-/// space.
+/// An image of 40 x 34 pixels with steps of about one texel of a 40-texel volume, in a space stretched relative
+/// to texture space.
 inline RenderRequest request_on_steps(const Texture& texture) {
   RenderRequest request = request_for(texture, usual_camera(40, 34), 40, 34, 0);
   request.steps.emplace();
@@ -33,7 +33,7 @@ inline Light some_light() {
   return light;
 }
 
-/// Gives the volume the ghost layer that the request needs.
+/// Sets the ghost layer that the request needs.
 inline void give_ghost_layer(Texture& texture, const RenderRequest& request) {
   texture.description.ghost_layer = ghost_layer_needed(texture.description, request);
 }
@@ -44,7 +44,7 @@ inline Image drawn(const Texture& texture, const RenderRequest& request, FrameCo
   return image;
 }
 
-/// The images of so many ranks, composed in visibility order.
+/// The images of `ranks` ranks, composited in visibility order.
 inline Image drawn_in_parts(const Texture& texture, const RenderRequest& request, int ranks,
                             FrameCounts& counts) {
   const KdTree tree(texture.description, ranks);
@@ -66,7 +66,7 @@ inline ReferenceImage expected(const Texture& texture, const RenderRequest& requ
                      request, request.window);
 }
 
-/// Whether the field takes a value twice in one segment, or touches it, is decided by its last bits.
+/// The last bits decide whether the field takes a value twice in one segment or only touches it.
 constexpr int pixels_that_graze = 4;
 
 }  // namespace understudy::volume::testing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments: colours that depend on two samples, by a pre-integration table.
+// Slice segments: colours that depend on two samples, looked up in a pre-integration table.
 #include <gmock/gmock.h>
 #include <hwy/targets.h>
 
@@ -15,8 +15,8 @@
 namespace understudy::volume::testing {
 namespace {
 
-/// Opaque bands of different colours, and what lies between front and back counts: neither sample alone tells
-/// it.
+/// Opaque bands of different colours that lie between front and back values: neither sample alone determines
+/// the entry.
 PreIntegrationTable banded_pairs(int edge, float clear_below = 0) {
   PreIntegrationTable table;
   table.edge = edge;
@@ -31,7 +31,7 @@ PreIntegrationTable banded_pairs(int edge, float clear_below = 0) {
   return table;
 }
 
-/// A request whose segments reach to the next plane, straight behind their front or along the ray.
+/// A request whose segments extend to the next plane, perpendicular to the plane or along the ray.
 RenderRequest slice_segments_of(Texture& texture, bool along_rays, int width = 45, int height = 39) {
   RenderRequest request = request_for(texture, usual_camera(width, height), width, height, 80);
   request.classification = banded_pairs(33);
@@ -40,7 +40,7 @@ RenderRequest slice_segments_of(Texture& texture, bool along_rays, int width = 4
   const Vec3 straight = scale(request.planes.normal, request.planes.spacing / square);
   if (along_rays) {
     slice_segment.planes = 1;
-    // Rays that lean by less than 60 degrees.
+    // For rays inclined by less than 60 degrees.
     for (double& reach : slice_segment.reach) reach = 2 * length(straight);
   } else {
     slice_segment.offset = straight;
@@ -74,7 +74,7 @@ TEST(Segments, AreWhatDoublePrecisionSays) {
           const Difference d = difference(image, reference, 1e-3);
           std::printf("along rays %d, texels %d, wrap %d, operator %d: max %.2e, rms %.2e\n", along_rays,
                       int(type), int(wrap), int(op), d.max, d.rms);
-          // Under 1e-5 is over 100 dB. Where a ray grazes the region one more sample may count.
+          // 1e-5 corresponds to 100 dB. A ray that grazes the region may have one sample more.
           EXPECT_LE(d.rms, op == Operator::add ? 1e-4 : 1e-5);
           EXPECT_LE(d.pixels_over, op == Operator::min ? 6 : 4);
         }
@@ -117,7 +117,7 @@ TEST(Segments, AGhostLayerTooSmallIsRefused) {
   EXPECT_THROW(drawn(store, request, counts), std::invalid_argument) << "pairs without segments";
 }
 
-/// A segment shows where only its back does: a block of clear fronts beside a block that shows.
+/// A segment may be visible at its back only: blocks with clear fronts lie beside visible blocks.
 TEST(Segments, SkippingLeavesNoSegmentOut) {
   for (const bool along_rays : {false, true}) {
     Texture texture = sampled(describe({64, 64, 64}, TexelType::u8), sphere_field(0.2, 0.01));

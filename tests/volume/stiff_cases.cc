@@ -35,8 +35,8 @@ StiffCase with_table(std::string name, TransferFunction table, double bound = 5e
   return {std::move(name), std::move(texture), std::move(request), bound, apart};
 }
 
-/// Between bytes the ray caster's weights have 14 bits; from one of 256 entries to the next a step makes 255
-/// times as much of that. Between floats some 1e-6 remains.
+/// For bytes, the ray caster's weights have 14 bits; a step from one of 256 entries to the next amplifies their
+/// error 255 times. For floats about 1e-6 remains.
 constexpr double bound_of_steps_in_bytes = 255.0 / (1 << 14);
 constexpr double bound_of_steps_in_floats = 2e-3;
 
@@ -69,7 +69,7 @@ Matrix4 eye_at(const Vec3& eye, const Vec3& centre, double near = 0.01, double f
 
 std::vector<StiffCase> stiff_tables() {
   std::vector<StiffCase> cases;
-  // Optical depth a sample from 1e-12 to 1e12, and beyond every number.
+  // Optical depth per sample from 1e-12 to 1e12, and infinite.
   for (int exponent = -12; exponent <= 12; exponent += 3) {
     const auto opacity = float(-std::expm1(-std::pow(10.0, exponent)));
     cases.push_back(with_table(
@@ -85,7 +85,7 @@ std::vector<StiffCase> stiff_tables() {
     cases.push_back(with_table(name, table_of(opacity), bound_of_steps_in_bytes, 1e-5));
     cases.push_back(in_floats(cases.back()));
   }
-  // 4,096 entries, so 4,095 times as much; floats alone can promise anything.
+  // With 4,096 entries the factor is 4,095; only float texels permit a bound.
   StiffCase spike = in_floats(with_table("SpikeNarrowerThanASample",
                                          table_of([](int i) { return i == 1250 ? 1.0F : 0.0F; }, 0.75F, 4096)));
   spike.bound = 16 * bound_of_steps_in_floats;
@@ -94,7 +94,7 @@ std::vector<StiffCase> stiff_tables() {
   TransferFunction glow = table_of([](int i) { return float(i) / 2560; });
   for (Rgba& entry : glow.entries) entry[3] = 0;
   cases.push_back(with_table("GlowWithoutOpacity", glow));
-  // Of 8 bits nothing of the first is left, and the second counts double; ours counts both as they are.
+  // 8-bit blending would lose the first fog and double the second; Understudy preserves both.
   cases.push_back(with_table("FogUnderHalfAByte", table_of([](int) { return 1.0F / 1000; })));
   cases.push_back(with_table("FogUnderAByte", table_of([](int) { return 1.0F / 400; })));
   return cases;
@@ -134,7 +134,7 @@ std::vector<StiffCase> stiff_views() {
   cases.push_back(with_camera("EyeOnAFace", eye_at({0.1, 0.05, 0.5}, {0, 0, 0})));
   cases.push_back(with_camera("EyeOnAnEdge", eye_at({0.5, 0.05, 0.5}, {0, 0, 0})));
   cases.push_back(with_camera("EyeOnACorner", eye_at({0.5, 0.5, 0.5}, {0, 0, 0})));
-  // Blocks end at texel centres: 8 cells from the first centre.
+  // Blocks end at texel centres, 8 cells after the first centre.
   cases.push_back(with_camera("EyeOnABlocksFace", eye_at({8.5 / 33 - 0.5, 0.05, 0.13}, {0.3, 0, -0.5})));
   cases.push_back(with_camera("RaysAlongTheFaces", multiply(parallel(0.7, 0.6, -2, 2), unit_cube())));
   cases.push_back(
@@ -148,7 +148,7 @@ std::vector<StiffCase> stiff_views() {
   cases.push_back(with_camera("Sheared", model({1, 0.6, 0, 0, 0, 1, 0.4, 0, 0.3, 0, 1, 0, 0, 0, 0, 1})));
   const Matrix4 flat{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1e-6, 0, 0, 0, 0, 1};
   StiffCase sheet = with_camera("Anisotropy1To1e6", model(flat));
-  // Slices that face the viewer would all but miss it.
+  // Slices that face the viewer would almost all miss it.
   sheet.request.planes = {{0, 0, -1}, -0.98, 0.0475, 21};
   cases.push_back(std::move(sheet));
   Matrix4 away = unit_cube();
@@ -174,7 +174,7 @@ void expect_within_bounds(const StiffCase& one, const char* renderer, const Draw
     const ReferenceImage expected = slice_sum(field, request, request.window);
     const double largest = *std::ranges::max_element(expected.rgba);
     if (op == Operator::over) shown = largest;
-    // Sums are as exact as they are large.
+    // The error of sums grows with their size.
     const double unit = op == Operator::add ? std::max(1.0, largest) : 1;
     from_reference = std::max(from_reference, difference(whole, expected).max / unit);
     apart = std::max(apart, difference(render_parts(one.texture, request, 4, draw).image, whole).max / unit);

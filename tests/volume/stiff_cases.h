@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stiff tables, odd fields and hard views, each with its bounds, for every ray caster.
+// Stiff transfer functions, unusual fields and hard views, each with its bounds, for every ray caster.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct StiffCase {
   std::string name;
   Texture texture;
   RenderRequest request;
-  /// Largest distance from the reference, any component; and between one rank and four.
+  /// Largest difference from the reference in any component, and between one rank and four.
   double bound = 5e-5;
   double apart = 1e-5;
 };
@@ -23,8 +23,8 @@ std::vector<StiffCase> stiff_tables();
 std::vector<StiffCase> stiff_fields();
 std::vector<StiffCase> stiff_views();
 
-/// Draws the case under every operator, on one rank and on four, expects it within its bounds, and prints the
-/// worst values as a row of a table.
+/// Draws the case under every operator on one rank and on four, expects it within its bounds, and prints the
+/// worst values as a table row.
 void expect_within_bounds(const StiffCase& one, const char* renderer, const DrawBricks& draw);
 
 }  // namespace understudy::volume::testing

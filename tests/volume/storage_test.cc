@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bricks, the table's emptiness query and the map of distances.
+// Bricks, the transfer function's emptiness query, and the distance map.
 #include <gmock/gmock.h>
 
 #include "tests/volume/scenes.h"
@@ -118,8 +118,8 @@ TEST(TransferTable, SaysExactlyWhichRangesShow) {
     for (int range = 0; range < 40; ++range) {
       float low = float(random() % 1000) / 900 - 0.05F, high = float(random() % 1000) / 900 - 0.05F;
       if (low > high) std::swap(low, high);
-      // Brute force: the piecewise linear table is not 0 throughout the range exactly when it is not 0 at one
-      // of the range's ends, at an entry inside it, or between.
+      // Brute force: the piecewise linear table is visible within the range exactly if it is not 0 at one of
+      // the range's ends, at an entry inside, or between.
       bool shows = false;
       const double last = entries - 1;
       const auto position = [&](double v) {
@@ -135,7 +135,7 @@ TEST(TransferTable, SaysExactlyWhichRangesShow) {
               (1 - (p - double(below))) * f.entries[below][k] + (p - double(below)) * f.entries[above][k] != 0;
       }
       const bool said = table.shows({low, high});
-      // Within rounding of an entry either answer is right.
+      // Within rounding of an entry, either answer is correct.
       const auto at_entry = [](double p) { return std::abs(p - std::round(p)) < 1e-4; };
       if (!at_entry(a) && !at_entry(b)) {
         EXPECT_EQ(said, shows) << "trial " << trial << ", seed 65";
@@ -192,7 +192,7 @@ TEST(Inverse, UndoesTheMatrixAndRefusesSingularOnes) {
     Matrix4 m;
     for (double& v : m) v = uniform(random);
     for (int k = 0; k < 4; ++k) {
-      m[4 * (trial % 4) + k] *= 1e6;  // extremes of scale are no reason to refuse
+      m[4 * (trial % 4) + k] *= 1e6;  // extreme scales are no reason for refusal
       m[4 * k + trial / 4 % 4] *= 1e-6;
     }
     const auto back = inverse(m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The integral of a pixel from the bricks of one rank, or of several, is the integral of the whole texture.
+// The integral of a pixel from the bricks of one or several ranks equals that of the whole texture.
 #include "volume/reference/stored_field.h"
 
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(Textures, StoredField,
                                            StoredCase{"a_plate", TexelType::f32, Wrap::border, {30, 1, 30}}),
                          [](const auto& info) { return info.param.name; });
 
-/// Steps of a thirtieth of the volume's depth each, however slantingly rays cross them.
+/// Steps of a thirtieth of the volume's depth (divided by `shorter`), at any angle of the ray.
 RenderRequest between_planes(const Texture& texture, double shorter) {
   RenderRequest request = request_on_steps(texture);
   request.steps->metric = {0, 0, 30 * shorter, 0, 0, 0, 0, 0, 0};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Iso-surfaces and light: against closed forms and the double-precision reference, and the same for any
-// partition.
+// Iso-surfaces and light, compared with closed forms and the double-precision reference; the image is the same
+// for any partition.
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
@@ -22,8 +22,8 @@ std::vector<Surface> two_veils() {
   return {{0.7, {0.9F, 0.2F, 0.1F, 0.8F}}, {0.35, {0.1F, 0.5F, 0.9F, 0.3F}}};
 }
 
-/// A haze of which every step shows 1 % hides what is behind it, and so tells how many steps in front of an
-/// opaque white surface there are.
+/// A haze with an opacity of 1 % per step attenuates an opaque white surface; the pixel's brightness gives the
+/// number of steps in front of it.
 constexpr double haze = 0.01;
 RenderRequest through_haze(const Texture& texture, double iso) {
   RenderRequest request = request_on_steps(texture);
@@ -62,7 +62,7 @@ TEST(Surfaces, AreFoundToAThousandthOfAVoxel) {
           ++hits;
           // A step is at most 1.2 voxels long.
           worst = std::max(worst, std::abs(steps_before(image.at(x, y)) - *hit));
-          // Where the filter's wrapping shows nothing of itself, the plane is one.
+          // The closed form of the plane holds only where the filter's wrapping has no effect.
           const Vec3 way = subtract(ray->to, ray->from), there = add(ray->from, scale(way, *hit / ray->length));
           if (std::any_of(there.begin(), there.end(),
                           [](double t) { return std::abs(t - 0.5) > 0.5 - 0.0125; }))
@@ -84,14 +84,14 @@ TEST(Surfaces, SearchEndsOnEveryCurve) {
   for (const double bend : {0.0, 0.5, 0.9, 0.999})
     for (int i = 1; i < 100; ++i) {
       const double root = i / 100.0;
-      // A cubic with one root, flat there where `bend` is near one.
+      // A cubic with one root, flat there if `bend` is near one.
       const auto curve = [&](double s) {
         return (s - root) * ((1 - bend) + bend * 3 * (s - root) * (s - root));
       };
       for (const double sign : {1.0, -1.0}) {
         SurfaceSearch search{0, float(5 + sign * curve(0)), float(5 + sign * curve(1))};
         ASSERT_TRUE(search.find(5, 1, [&](float s) { return float(5 + sign * curve(double(s))); }));
-        // Values are known to half a millionth.
+        // Values have an error of half a millionth.
         const double residue = std::abs(curve(double(search.front)));
         worst = std::max(worst, std::min(std::abs(double(search.front) - root), residue / 1e-6 * 1e-3));
       }
@@ -252,7 +252,7 @@ TEST(Surfaces, OfUnusualFieldsAreFinite) {
   const float nan = std::nanf(""), infinity = std::numeric_limits<float>::infinity();
   struct Unusual {
     const char* name;
-    std::vector<float> values;  // one after the other
+    std::vector<float> values;  // repeated in this order
     double iso;
     bool shows;
   };
@@ -267,7 +267,7 @@ TEST(Surfaces, OfUnusualFieldsAreFinite) {
     for (const bool slopes : {false, true}) {
       Texture texture = noise(describe({13, 12, 11}, TexelType::f32), 3);
       for (std::size_t i = 0; i < texture.texels.size() / 4; ++i) {
-        // Segments of equal value, or all mixed.
+        // Runs of equal values, or all mixed.
         const float v = unusual.values[(slopes ? i / 39 : i) % unusual.values.size()];
         std::memcpy(texture.texels.data() + 4 * i, &v, sizeof v);
       }
@@ -361,7 +361,7 @@ TEST(Light, OnFirstSamplesBeyondTheExitIsWhatDoublePrecisionSays) {
     Texture texture = sampled(describe({40, 37, 43}, type, Wrap::edge), marschner_lobb_field());
     RenderRequest request = request_on_steps(texture);
     request.light = some_light();
-    // As long as the box is deep.
+    // Steps as long as the box is deep.
     for (double& number : request.steps->metric) number /= 40;
     request.steps->first = 0.75;
     request.steps->at_least_one = true;
@@ -379,7 +379,7 @@ TEST(Light, OnFirstSamplesBeyondTheExitIsWhatDoublePrecisionSays) {
   }
 }
 
-/// Light from the eye that is no one's formula.
+/// Light from the eye with an arbitrary response, not that of any lighting model.
 Light some_response() {
   Light light = some_light();
   light.direction = {};
@@ -448,7 +448,7 @@ TEST(Light, GradientOpacityIsWhatDoublePrecisionSays) {
     RenderRequest request = request_for(texture, usual_camera(40, 34), 40, 34, 60);
     request.filter = c.filter;
     request.light = c.light;
-    // Nothing in even parts, all of it in the middle, little on the steepest slopes.
+    // Gradient opacity: 0 where the field is constant, 1 for medium slopes, little for the steepest.
     request.light->gradient_opacity = {{0, 0.3F, 1, 0.5F, 0.1F}, 0.2, 3};
     give_ghost_layer(texture, request);
     FrameCounts counts;
@@ -535,7 +535,7 @@ TEST(Surfaces, AndLightAreTheSameOnAllInstructionSets) {
         RenderRequest request = request_of(texture, scene);
         request.method = method;
         if (method == Method::pre_integrated) {
-          // A table that ends within the field's values.
+          // A transfer function that ends within the field's values.
           std::get<TransferFunction>(request.classification).low = 0.2F;
           std::get<TransferFunction>(request.classification).high = 0.8F;
         }

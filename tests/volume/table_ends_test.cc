@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pre-integrated segments under tables that end within the field's values: beyond an end the medium is that of
-// the end, so a segment that leads past it is parted there.
+// Pre-integrated segments with transfer functions that end within the field's values. Beyond an end the medium
+// is that of the end, so a segment that crosses it is split there.
 #include <gtest/gtest.h>
 
 #include "tests/volume/segment_scenes.h"
@@ -14,7 +14,7 @@ namespace {
 struct Ends {
   const char* name;
   float low, high;
-  float opacity;  ///< of the last entry; the first has half of it, or nothing
+  float opacity;  ///< of the last entry; the first has half of it, or 0
   bool first_shows;
 };
 constexpr Ends tables[] = {{"the middle four fifths", 0.1F, 0.9F, 0.25F, true},
@@ -68,7 +68,7 @@ TEST(TableEnds, AreWhereDoublePrecisionSays) {
 }
 
 TEST(TableEnds, MakeNoDifferenceWhereTheTableGoesOnAsItEnds) {
-  // The same function over more values than the field has: its table of segments needs no parting.
+  // The same function defined over more values than the field has: its segments need no splitting.
   const Ends ends = tables[0];
   for (const TexelType type : {TexelType::u8, TexelType::f32}) {
     Texture texture = noise(describe({40, 37, 43}, type), 9);

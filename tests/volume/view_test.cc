@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Transfer functions from control points, and the camera that goes around a volume.
+// Transfer functions from control points, and the orbit camera.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -64,12 +64,12 @@ TEST(TransferControlPoints, OpacityFollowsTheStepAndRunsLinearlyBetweenControlPo
     const double twice = 1 - std::pow(1 - double(half.entries[i][3]), 2);
     EXPECT_NEAR(twice, one.entries[i][3], 1e-6) << "two half steps let through what one step does";
   }
-  // A fog so thin that 1 - opacity is 1 in float survives.
+  // A fog so thin that 1 - opacity is 1 in float is preserved.
   const TransferFunction fog =
       sampled(TransferControlPoints{true, {{0, {1, 1, 1}, 1e-12}, {1, {1, 1, 1}, 1e-12}}}, 0, 9, 0.5);
   EXPECT_FLOAT_EQ(fog.entries[7][3], 5e-13F);
   EXPECT_EQ(fog.high, 1) << "control points of values know no range";
-  // Two control points at one place make a step.
+  // Two control points at one position make a step.
   const TransferFunction step = sampled(
       TransferControlPoints{true,
                             {{0, {1, 1, 1}, 0}, {1, {1, 1, 1}, 0}, {1, {1, 1, 1}, 0.5}, {2, {1, 1, 1}, 0.5}}},
@@ -98,7 +98,7 @@ TEST(OrbitCamera, LooksAtTheMiddleFromEverySideAndFromThePoles) {
         for (int k = 0; k < 3; ++k) EXPECT_LE(std::abs(c[std::size_t(k)]), c[3] * 1.0001) << "in sight";
       }
     }
-  // From 0 one looks along y: x to the right, z up.
+  // Angle 0 looks along y: x to the right, z up.
   const Matrix4 front = orbit_request(volume, {1, 1, 1}, {0, 0, 4}, 50, 50, 1).texture_to_clip;
   EXPECT_GT(transform_point(front, {1, 0.5, 0.5})[0], 0.1);
   EXPECT_GT(transform_point(front, {0.5, 0.5, 1})[1], 0.1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples that cover their whole rays: the midpoint rule to the very end of each ray.
+// Samples that cover their whole rays: the midpoint rule up to the very end of each ray.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,7 +17,7 @@
 namespace understudy::volume::testing {
 namespace {
 
-/// What a layer of `length` steps shows, where one of a whole step shows `sample`.
+/// Colour and opacity of a layer of `length` steps, where `sample` is that of one step.
 std::array<double, 4> layer(const std::array<double, 4>& sample, double length) {
   const double alpha = 1 - std::pow(1 - sample[3], length);
   const double share = sample[3] > 0 ? alpha / sample[3] : length;
@@ -35,7 +35,7 @@ std::array<double, 4> sample_of(const TransferFunction& table, double value) {
   return sample;
 }
 
-/// The definition, in double.
+/// The definition, in double precision.
 ReferenceImage expected(const Field& field, const RenderRequest& request) {
   ReferenceImage image{request.window, std::vector<double>(4 * request.window.pixels(), 0)};
   for (int y = 0; y < request.window.height; ++y)
@@ -90,7 +90,8 @@ TEST(WholeRays, ShowTheMidpointRuleToTheirEnd) {
       const Whole whole = render_whole(texture, request);
       const Difference d = difference(whole.image, expected(field, request), 1e-3);
       std::printf("request %d: largest %.1e, rms %.1e\n", i, d.max, d.rms);
-      // A sample more or less where the last one begins to stand for a step and a half changes next to nothing.
+      // One sample more or less, where the last one begins to represent a step and a half, changes almost
+      // nothing.
       EXPECT_LE(d.max, 2e-3) << i;
       EXPECT_LE(d.rms, 2e-5) << i;
       request.steps->cover_whole_ray = false;
@@ -112,7 +113,7 @@ TEST(WholeRays, AreTheSameForEveryPartition) {
   }
 }
 
-/// A field that voxels hold exactly, visible up to the volume's sides.
+/// A field that voxels represent exactly, visible up to the volume's sides.
 TEST(WholeRays, ConvergeWithOrderTwoWhereRaysLeaveInsideOfSomethingVisible) {
   const Texture texture =
       sampled(describe({33, 33, 33}, TexelType::f32), linear_field({0.3, 0.25, 0.35}, 0.05));

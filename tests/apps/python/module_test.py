@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""module_test.py BUILD: the Python module, held against the commands and against itself."""
+"""module_test.py BUILD: compares the Python module with the commands and with itself."""
 
 import os
 import subprocess
@@ -23,7 +23,7 @@ SIZE = (64, 48)
 
 
 def ball(shape=(20, 24, 28)):
-    """Bytes that fall from the middle outwards, on every axis at another rate."""
+    """Bytes that decrease from the middle outwards, at a different rate along each axis."""
     z, y, x = (numpy.linspace(-1, 1, count).reshape(form) for count, form in zip(shape, ((-1, 1, 1), (1, -1, 1), (1, 1, -1))))
     return (255 * numpy.clip(1.1 - numpy.sqrt(x * x + 2 * y * y + 3 * z * z), 0, 1)).astype(numpy.uint8)
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volumes larger than the memory that OpenGL may take, as the user of `understudy render` meets them.
+// `understudy render` with volumes larger than the memory that OpenGL may use.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ TEST_F(Render, ShowsTheSameFromLittleGpuMemory) {
   if (probe.output.find("GL, as asked") == std::string::npos) GTEST_SKIP() << probe.output;
   EXPECT_THAT(probe.output, Not(HasSubstr("by bricks")));
   const RgbaImage all = image(common);
-  // Three and more bricks of 65^3 texels of 16 bits, where each node has twelve or eighteen.
+  // Memory for three or more bricks of 65^3 16-bit texels, while each node has twelve or eighteen bricks.
   const std::string little = common + " --gpu-memory 2200K --report " + folder_.file("r.json");
   EXPECT_LE(difference(image(little), all).max, 1e-5);
   EXPECT_THAT(report()["backends"].dump(),

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Levels of detail of a hierarchical volume, as images: each lies where the volume lies, with the volume's
-// colours.
+// Levels of detail of a hierarchical volume, as images: each has the volume's position and colours.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A field that rises evenly in a slanting direction: the interpolation of every level is the field itself.
+/// A field that is linear in an oblique direction: interpolation of any level reproduces it.
 std::string slope_in_levels(const viewer_test::TemporaryFolder& folder) {
   constexpr int edge = 131;
   std::vector<float> values;
@@ -32,7 +31,7 @@ std::string slope_in_levels(const viewer_test::TemporaryFolder& folder) {
 TEST_F(Render, ALevelLiesWhereTheVolumeLies) {
   const std::string file = slope_in_levels(folder_);
   std::vector<RgbaImage> images;
-  // Steps of one length in all of them.
+  // Steps of equal length in all of them.
   for (const char* options : {" --step 4", " --level 1 --step 2", " --level 2"}) {
     const Result result =
         render(file + options + std::string(" --transfer-function rainbow --size 80x80 --save-float ") +
@@ -46,7 +45,8 @@ TEST_F(Render, ALevelLiesWhereTheVolumeLies) {
   for (std::size_t level = 1; level < images.size(); ++level) {
     const double rms = difference(images[0], images[level]).rms;
     std::printf("level %zu: rms %.1e\n", level, rms);
-    // Half a voxel around the volume has its outermost values, and a level's are farther in.
+    // Within half a voxel of the volume's sides the outermost values are repeated; those of a level lie further
+    // inside.
     EXPECT_LT(rms, 5e-3) << "level " << level;
   }
 }

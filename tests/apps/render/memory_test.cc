@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volumes that the ranks' memory does not hold: the same image, of parts, in no more memory than was given.
+// Volumes that do not fit into the ranks' memory: rendered in parts, they give the same image within the given
+// memory.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -54,7 +55,7 @@ TEST_F(Render, LeavesOutPartsThatShowNothing) {
 
 #ifdef UNDERSTUDY_HAS_NODES
 TEST_F(Render, NoRankKeepsAVolumeForTheOthersBeyondItsMemory) {
-  // Half of it fits into each rank, and the whole into none.
+  // Half of the volume fits into each rank, the whole into none.
   const std::string scene = "synthetic:260x260x260:u16:gyroid --transfer-function ct --size 100x80 --report " +
                             folder_.file("r.json");
   const RgbaImage whole = image(scene + " -n 2");
@@ -70,7 +71,7 @@ TEST_F(Render, NoRankKeepsAVolumeForTheOthersBeyondItsMemory) {
 #endif
 
 TEST_F(Render, StaysWithinTheAddressesThatAProcessMayHave) {
-  // Loaded whole it would take more than the limit leaves.
+  // Loaded as a whole, the volume would exceed the limit.
   const std::string scene =
       "synthetic:460x460x460:u16:gyroid --transfer-function ct --size 64x48 --report " + folder_.file("r.json");
   const Result result = shell("ulimit -v 1250000; " + std::string(UNDERSTUDY_PROGRAM) + " render --out " +
@@ -92,7 +93,7 @@ TEST_F(Render, KeepsAnErrorInPartsAsInOne) {
       EXPECT_LE(figures["ranks"][0]["peak_bytes"].get<double>(), 1.1 * (109U << 20U));
     }
     ASSERT_TRUE(figures["budget"].is_object());
-    // For their values, two questions of calibration, two of each proof, and the image.
+    // Per part: one load for the values, two for calibration, two for each check, and one for the image.
     EXPECT_LE(figures["passes"]["loads"], 10 * figures["passes"]["parts"].get<int>());
     EXPECT_LE(figures["budget"]["measured"], 2 / 255.0);
     const double apart = difference(exact, shown).max;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One rank or four: the same image, under a table so narrow that samples mostly miss it as well.
+// One rank or four give the same image, even with a transfer function so narrow that most samples miss it.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace understudy::launcher {
 namespace {
 
-/// A gyroid about 0.5, as floats.
+/// A gyroid around 0.5, as floats.
 std::string waves(const TemporaryFolder& folder, int side) {
   std::vector<float> values;
   const auto at = [&](int i) { return 12.0 * i / (side - 1) - 6; };
@@ -42,7 +42,7 @@ TEST_F(Render, ANarrowTableShowsTheSameOnOneRankAndOnFour) {
     EXPECT_LE(apart.max, 1e-5);
     EXPECT_LE(255 * shown.rms, 0.05);
   }
-  // Samples elsewhere show another image: what the table is narrow for.
+  // Other sample positions give another image, so the narrow table makes the test sensitive.
   const Difference other = difference(image(common + " --step 0.97"), image(common));
   EXPECT_GT(255 * other.rms, 10);
 }

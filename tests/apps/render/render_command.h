@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy render` run by a test, in a folder of its own.
+// Runs `understudy render` from a test, in a separate folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ using Json = nlohmann::json;
 
 struct Result {
   int status = 0;
-  std::string output;  ///< both channels
+  std::string output;  ///< stdout and stderr
 };
 
 inline Result shell(const std::string& command) {
@@ -40,7 +40,7 @@ inline Result shell(const std::string& command) {
 
 class Render : public ::testing::Test {
  protected:
-  /// The arguments go through the shell.
+  /// The arguments are parsed by the shell.
   Result render(const std::string& arguments) const {
     return shell(std::string(UNDERSTUDY_PROGRAM) + " render --out " + folder_.file("p.png") + " " + arguments);
   }
@@ -60,7 +60,7 @@ class Render : public ::testing::Test {
     return folder_.write(name + "_f64.raw", std::as_bytes(std::span(values)));
   }
 
-  /// The image before it was rounded, of a rendering that succeeds.
+  /// The image before rounding; expects the rendering to succeed.
   RgbaImage image(const std::string& arguments) const {
     const Result result = render(arguments + " --save-float " + folder_.file("f.pfm"));
     EXPECT_EQ(result.status, 0) << arguments << ": " << result.output;

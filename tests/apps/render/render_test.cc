@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy render` as its user sees it: images of files without a viewer, in one process and on nodes.
+// `understudy render` as seen by its user: images of files without a viewer, in one process and on nodes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ TEST_F(Render, ATimeStepOfAFileThatHoldsSeveral) {
     EXPECT_LT(difference(image(of_series + " -n 2"), expected).rms, 1e-6);
 #endif
   }
-  // Of several files the steps are counted through.
+  // Steps are numbered consecutively over several files.
   EXPECT_EQ(difference(image(series + " " + series + " --size 40x40 --time-step 5"),
                        image(folder_.file("step2_20x18x16.raw") + " --size 40x40"))
                 .rms,
@@ -113,7 +113,7 @@ TEST_F(Render, TheWaysToSayTheSameGiveTheSameImage) {
   const std::string common = " --size 50x50 --save-float " + folder_.file("f.pfm");
   ASSERT_EQ(render(file + common).status, 0);
   const RgbaImage expected = read_image(folder_.file("f.pfm"));
-  // The built-in table in a file, by range and by the raw scalars' hints.
+  // The built-in transfer function as a file; size and type as options instead of in the file name.
   const std::string control_points =
       folder_.write("grey.json", std::string(R"({"knots": [{"at": 0, "colour": [0, 0, 0], "opacity": 0},
                                              {"at": 1, "colour": [1, 1, 1], "opacity": 0.1}]})"));
@@ -123,7 +123,7 @@ TEST_F(Render, TheWaysToSayTheSameGiveTheSameImage) {
                 .status,
             0);
   EXPECT_EQ(difference(read_image(folder_.file("f.pfm")), expected).max, 0);
-  // Sixteen bits over the values' range are nearly floats.
+  // 16 bits over the range of values are almost as exact as floats.
   ASSERT_EQ(render(file + " --texels u16 --range=-0.34,1.67" + common).status, 0);
   const double apart = difference(read_image(folder_.file("f.pfm")), expected).max;
   EXPECT_GT(apart, 0);
@@ -230,7 +230,7 @@ TEST_F(Render, NodesThatDivideTheImageReadTheFileOnce) {
   }
 }
 
-// The nodes see the end of a file that the launcher never read.
+// The launcher never reads the end of the file, so only the nodes detect the error.
 TEST_F(Render, WhatANodeFindsWrongIsSaid) {
   const std::string name = folder_.write("half_60x60x60_u8.raw", std::string(60 * 60 * 30, 'x'));
   ASSERT_EQ(shell("gzip " + name).status, 0);

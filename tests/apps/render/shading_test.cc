@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces, light and segments as the user of `understudy render` asks for them.
+// Surfaces, light and pre-integrated segments of `understudy render`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A ball that is brightest in its middle, in 16 bits: the value v lies at (1 - v / 60000) half sides.
+/// A 16-bit ball that is brightest in its middle: value v lies at a radius of (1 - v / 60000) half sides.
 std::string cone(const TemporaryFolder& folder, int side) {
   std::vector<std::uint16_t> values;
   for (int z = 0; z < side; ++z)
@@ -32,8 +32,9 @@ constexpr const char* view = " --size 80x80 --camera 0,0,4";
 
 TEST_F(Render, ASurfaceLiesWhereTheValueIs) {
   const RgbaImage image = this->image(cone(folder_, 40) + " --no-volume --surface 30000,#ff8000" + view);
-  // The ball's half side is 1 / sqrt(3) of the half diagonals in which the eye is 4 away, and the image shows
-  // 2 * 4 * tan(15 degrees) of them: half the half side has a silhouette of 10.8 pixels.
+  // In units of half the volume's diagonal, half a side of the ball is 1 / sqrt(3), the eye is at distance 4,
+  // and the image shows 2 * 4 * tan(15 degrees). The surface at half of the half side has a silhouette of 10.8
+  // pixels.
   const double half = 0.5 / std::sqrt(3.0);
   const double radius = 40 * half / std::sqrt(16 - half * half) / std::tan(std::numbers::pi / 12);
   for (int x = 0; x < 80; ++x) {
@@ -68,7 +69,7 @@ TEST_F(Render, LightFallsOnWhatItIsMeantFor) {
   EXPECT_LT(head_light.pixel(50, 40)[0], 0.6F) << "it is nearly seen from the side";
   const RgbaImage from_the_right = image(surface + " --light-from 90,0");
   EXPECT_GT(from_the_right.pixel(48, 40)[0], from_the_right.pixel(41, 40)[0] + 0.3F);
-  // The same on both sides: a surface is lit from behind as well.
+  // The same on both sides: a surface is also lit from behind.
   EXPECT_NEAR(from_the_right.pixel(48, 40)[0], from_the_right.pixel(31, 40)[0], 0.02);
 
   const std::string both = cone(folder_, 40) + " --transfer-function grey --surface 45000" + view;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a confined child has of its parent, and when it ends.
+// What a confined child inherits from its parent, and when it ends.
 #include "apps/understudy/processes/child_process.h"
 
 #include <fcntl.h>
@@ -24,7 +24,7 @@ namespace {
 
 using compositor::FileDescriptor;
 
-/// What a child writes, line by line.
+/// Reads a child's output line by line.
 class Lines {
  public:
   Lines() {
@@ -37,7 +37,7 @@ class Lines {
   int writes() const { return writes_.get(); }
   void close_own_end() { writes_.reset(); }
 
-  /// Empty when nobody can write any more, or when nothing came for long.
+  /// Returns "" if no writer is left, or if nothing arrives within a minute.
   std::string next() {
     std::string line;
     for (char letter = 0; compositor::wait_until_ready(reads_.get(), POLLIN, patience()) &&
@@ -45,7 +45,7 @@ class Lines {
       line += letter;
     return line;
   }
-  /// False when somebody still can after long.
+  /// Returns false if a writer is still left after a minute.
   bool ended() {
     char letter = 0;
     while (compositor::wait_until_ready(reads_.get(), POLLIN, patience()))
@@ -60,7 +60,7 @@ class Lines {
   FileDescriptor writes_;
 };
 
-/// Speaks to `lines`.
+/// Writes to `lines`.
 Command shell(const std::string& script, const Lines& lines) {
   Command command{
       .arguments = {"/bin/sh", "-c", fmt::format("exec >/proc/$$/fd/{}; {}", lines.writes(), script)},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy compare`: what two images differ by, and which files it reads.
+// `understudy compare`: the differences between two images, and the file formats that it reads.
 #include "apps/understudy/cli/compare.h"
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ class CompareFiles : public ::testing::Test {
     return folder_ / name;
   }
 
-  /// Rows bottom up, as PFM has them.
+  /// Bottom row first, as in PFM.
   fs::path pfm(const std::string& name, const std::string& kind, int width, int height,
                const std::vector<float>& values, bool little_endian = true) const {
     std::string text = kind + "\n" + std::to_string(width) + " " + std::to_string(height) + "\n" +

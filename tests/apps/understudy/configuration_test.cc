@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a configuration file says for a viewer.
+// Settings of a configuration file for a viewer.
 #include "apps/understudy/configuration/configuration.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entries of the desktop's menu with Understudy under the viewer.
+// Desktop menu entries that start a viewer under Understudy.
 #include "apps/understudy/desktop/desktop_entry.h"
 
 #include <gmock/gmock.h>

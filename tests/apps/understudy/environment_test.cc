@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The environments of children: injection methods for the viewer, none for the nodes.
+// Environments of child processes: injection variables for the viewer, none for the nodes.
 #include "apps/understudy/processes/environment.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One table serves the command line and the environment.
+// Command line and environment are parsed by one table.
 #include "spu/options.h"
 
 #include <gmock/gmock.h>

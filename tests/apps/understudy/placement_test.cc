@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where ranks go: hostfiles, Slurm's lists and environment, and the command line that MPI's launcher gets of
-// them.
+// Placement of ranks: hostfiles, Slurm's node lists and environment, and the resulting command line of the MPI
+// launcher.
 #include "apps/understudy/hosts/placement.h"
 
 #include <gmock/gmock.h>
@@ -125,7 +125,7 @@ TEST(Hostfile, KnowsThisMachine) {
   for (const std::string& host : {std::string(name.data()), std::string("localhost"), std::string("127.0.0.1"),
                                   "me@" + std::string(name.data())})
     EXPECT_TRUE(is_this_machine(host)) << host;
-  // 192.0.2.0/24 is for documentation: nobody has it.
+  // 192.0.2.0/24 is reserved for documentation.
   EXPECT_FALSE(is_this_machine("192.0.2.7"));
   EXPECT_FALSE(is_this_machine("no-such-host.invalid"));
 }
@@ -177,7 +177,8 @@ TEST(Placement, OnTheHostsThatAreLeft) {
   const Placement one = without_hosts(four, {"b", "c", "d"});
   EXPECT_EQ(one.ranks, 1);
   EXPECT_EQ(one.launch, Launch::this_machine);
-  // Fewer ranks than slots move to slots that were free; more ranks than slots stay as dense as they were.
+  // If there are fewer ranks than slots, ranks move to free slots; if there are more, the ranks per slot stay
+  // the same.
   EXPECT_EQ(without_hosts({Launch::remote_shell, 3, four.hosts}, {"b"}).ranks, 3);
   EXPECT_EQ(without_hosts({Launch::remote_shell, 8, four.hosts}, {"b"}).ranks, 6);
 }
@@ -203,7 +204,8 @@ TEST(Placement, AnAllocationThatThisMachineIsNotInIsLeftAlone) {
   const Placement elsewhere = placement_of({}, allocation, is_nothing);
   EXPECT_EQ(elsewhere.launch, Launch::this_machine);
   EXPECT_EQ(elsewhere.ranks, 0);
-  // An interactive shell is one task: no wish for a group; one node needs nobody's help.
+  // An interactive shell (one task) does not request a node group; an allocation of one node needs no Slurm
+  // launch.
   Environment shell = allocation;
   shell["SLURM_NTASKS"] = "1";
   EXPECT_EQ(placement_of({}, shell, is_anything).ranks, 0);
@@ -236,7 +238,7 @@ TEST(MpiVersion, IsReadOfWhatTheLauncherSays) {
   EXPECT_EQ(text_of(""), "none");
 }
 
-/// A folder of programs that say what launchers say, alone on PATH but for the shell.
+/// A folder, the only one on PATH, with programs that print what MPI launchers print.
 class LaunchersOnPath : public testing::Test {
  protected:
   LaunchersOnPath() {

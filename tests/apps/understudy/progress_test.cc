@@ -13,7 +13,7 @@ namespace {
 using ::testing::EndsWith;
 using ::testing::StartsWith;
 
-/// What standard error gets of a hundred steps.
+/// What is written to stderr for a hundred steps.
 std::string progress_of(ProgressStyle style) {
   testing::internal::CaptureStderr();
   {
@@ -27,7 +27,7 @@ TEST(Progress, LinesThatStayComeForEveryTenthAtLeast) {
   const std::string lines = progress_of(ProgressStyle::lines);
   EXPECT_THAT(lines, StartsWith("understudy: cutting   0 %\n"));
   EXPECT_THAT(lines, EndsWith("understudy: cutting 100 %\n"));
-  // One more for every two seconds, where the machine is that slow.
+  // On a slow machine there is one more line every two seconds.
   EXPECT_GE(std::ranges::count(lines, '\n'), 11);
   EXPECT_EQ(lines.find('\r'), std::string::npos);
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""report_schema_test.py PROGRAMS: reports of runs with and without nodes, budgets and GL servers are as docs/schema has them,
-key by key: what a schema does not name is not in a report."""
+"""report_schema_test.py PROGRAMS: validates reports of runs with and without nodes, budgets and GL servers against
+docs/schema, key by key: a report may not contain keys that its schema does not name."""
 
 import json
 import os
@@ -22,7 +22,7 @@ def validator(name):
     schemas = {path.name: json.loads(path.read_text()) for path in SCHEMAS.glob("*.json")}
     for schema in schemas.values():
         jsonschema.Draft202012Validator.check_schema(schema)
-    # One schema that refers to no other file: how others are found differs between versions of jsonschema.
+    # Merged into one schema without references to files, because versions of jsonschema resolve references differently.
     whole = schemas[name]
     origin = schemas["origin.schema.json"]
     whole["properties"]["origin"] = {key: value for key, value in origin.items() if not key.startswith("$")}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counters outlive their process, and the report says what they hold.
+// Counters outlive their process, and the report contains their values.
 #include "spu/report/report.h"
 
 #include <gmock/gmock.h>
@@ -162,7 +162,7 @@ TEST(Report, NamesNobodyAsTheOneWhoDrewWhereNothingWasSubstituted) {
   const auto counters = example();
   counters->frames_substituted = 0;
   counters->frames_left = 3;
-  counters->nodes = 0;  // of `--connect` nobody answered
+  counters->nodes = 0;  // `--connect` got no answer
   std::strcpy(counters->volume[0].left_because[0].reason, "the render nodes did not answer");
   counters->volume[0].left_because[0].count = 3;
   const ProcessCounters* const one = counters.get();
@@ -197,7 +197,7 @@ TEST(Report, KnowsNothingOfFramesThatAStageElsewhereHasDrawnButTheirNumber) {
   EXPECT_EQ(summary_line(Processes(&one, 1)),
             "understudy: 12 frames came from a GL server on another machine, which knows what of them was "
             "substituted");
-  // A window with one buffer shows images that end no frame.
+  // A window with a single buffer shows images without ending a frame.
   const auto server = std::make_unique<ProcessCounters>();
   server->calls[0] = 100;
   const std::array<const ProcessCounters*, 2> both = {counters.get(), server.get()};
@@ -215,7 +215,7 @@ class CountersInAFolder : public ::testing::Test {
     fs::remove_all(folder_);
   }
 
-  /// Runs `work` in a child that ends without any clean-up, as a killed viewer does.
+  /// Runs `work` in a child that ends without cleaning up, like a killed viewer.
   template <typename Work>
   static void in_killed_child(Work work) {
     const pid_t child = fork();
@@ -254,7 +254,7 @@ TEST_F(CountersInAFolder, AChildAfterForkCountsForItself) {
     std::uint64_t* calls = thread_call_counter();
     *calls = 10;
     if (const pid_t grandchild = fork(); grandchild == 0) {
-      *calls += 3;  // the pointer that a thread keeps stays right
+      *calls += 3;  // the pointer that a thread keeps stays valid
       _exit(&process_counters() == &counters ? 0 : 1);
     } else {
       int status = 0;
@@ -286,7 +286,7 @@ TEST_F(CountersInAFolder, AReportIsReplacedWholeAndLeavesNothingBeside) {
   in_killed_child([&] {
     write_report_when_due(path);
     count_frame({.time_ms = 1, .error_rms = -1});
-    write_report_when_due(path);  // not due again so soon
+    write_report_when_due(path);  // not due again yet
     if (json::parse(std::ifstream(path))["frames"] != 0) _exit(1);
     if (!write_report_now(path)) _exit(2);
   });

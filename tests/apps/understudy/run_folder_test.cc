@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The folder of a run is private, and gone at the end.
+// The folder of a run is private, and removed at the end.
 #include "apps/understudy/launch/run_folder.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(RunFolder, RemovesWhatADeadLauncherLeftAndNoFolderOfTheUsers) {
   ASSERT_EQ(waitpid(launcher, nullptr, 0), launcher);
   const auto folders = [&] { return std::distance(fs::directory_iterator(parent), fs::directory_iterator()); };
   EXPECT_EQ(folders(), 2);
-  std::this_thread::sleep_for(std::chrono::seconds(12));  // younger ones are left alone
+  std::this_thread::sleep_for(std::chrono::seconds(12));  // younger folders are not removed
   { const RunFolder next; }
   EXPECT_EQ(folders(), 1);
   EXPECT_TRUE(fs::exists(own / "table.csv"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy run` as its user sees it: the viewer's own exit status, one summary line, nothing left behind.
-// The viewers here are shell commands; they open no OpenGL.
+// `understudy run` as seen by its user: the viewer's own exit status, one summary line, nothing left behind.
+// The viewers here are shell commands that do not use OpenGL.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -29,7 +29,7 @@ using ::testing::Not;
 
 struct Result {
   int status = 0;
-  std::string output;  ///< both channels
+  std::string output;  ///< stdout and stderr
 };
 
 Result shell(const std::string& command) {
@@ -44,12 +44,12 @@ Result shell(const std::string& command) {
   return result;
 }
 
-/// `arguments` go through the shell.
+/// `arguments` are parsed by the shell.
 Result understudy(const std::string& arguments) {
   return shell(UNDERSTUDY_PROGRAM " " + arguments);
 }
 
-/// Empty where it cannot be read, as of a process that has just ended.
+/// Returns "" if the file cannot be read, for example because its process has just ended.
 std::string contents(const fs::path& path) {
   std::ostringstream text;
   text << std::ifstream(path).rdbuf();
@@ -60,7 +60,7 @@ class UnderstudyRun : public ::testing::Test {
  protected:
   UnderstudyRun() {
     fs::create_directories(folder_);
-    // Every run makes its folder here, so that what is left behind can be seen.
+    // Every run creates its folder here, so that leftovers can be detected.
     setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1);
   }
   ~UnderstudyRun() override { fs::remove_all(folder_); }
@@ -72,8 +72,8 @@ class UnderstudyRun : public ::testing::Test {
     return true;
   }
 
-  /// Waits for something another process does. Three minutes are long enough to call it a failure: after one,
-  /// the launcher ends a group that does not start.
+  /// Waits up to three minutes for another process. This is long enough to be called a failure: after one
+  /// minute the launcher ends a group that does not start.
   template <typename Condition>
   static bool comes_true(Condition condition) {
     for (int tenths = 0; tenths < 1800; ++tenths) {
@@ -86,7 +86,7 @@ class UnderstudyRun : public ::testing::Test {
   fs::path folder_ = fs::temp_directory_path() / ("run-command-test-" + std::to_string(getpid()));
 };
 
-/// Characters of UTF-8.
+/// Number of UTF-8 characters.
 std::ptrdiff_t width(const std::string& line) {
   return std::ranges::count_if(line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
 }
@@ -301,7 +301,7 @@ TEST_F(UnderstudyRun, RunsTheViewerByItselfWhereMpiIsMissing) {
   EXPECT_TRUE(nothing_is_left());
 }
 
-/// The ranks of the run with this private folder, in which their socket lies, by process id.
+/// Process ids of the run's ranks, identified by the run's private folder, which holds their socket.
 std::set<pid_t> ranks_of(const std::string& folder) {
   std::set<pid_t> ranks;
   for (const auto& process : fs::directory_iterator("/proc")) {
@@ -313,7 +313,7 @@ std::set<pid_t> ranks_of(const std::string& folder) {
   return ranks;
 }
 
-/// A run on nodes whose viewer does nothing until it is told to end.
+/// A run on nodes whose viewer only waits until it is told to end.
 class RunOnNodes {
  public:
   RunOnNodes(const fs::path& folder, int nodes)
@@ -338,7 +338,8 @@ class RunOnNodes {
     if (launcher_ > 0) end();
   }
 
-  /// Ends the viewer; the launcher's exit status, or -1 when it had to be killed after a minute.
+  /// Ends the viewer. Returns the launcher's exit status, or -1 if the launcher had to be killed after a
+  /// minute.
   int end() {
     std::ofstream(done_) << "";
     int status = 0;
@@ -355,7 +356,7 @@ class RunOnNodes {
     return -1;
   }
   std::string said() const { return contents(said_); }
-  /// What it said and who waits where, for a failure's message.
+  /// Its output and a list of all processes, for failure messages.
   std::string state() const {
     return said() + shell("ps -eo pid,ppid,stat,wchan:20,etime,args --forest").output;
   }
@@ -389,7 +390,7 @@ TEST_F(UnderstudyRun, StartsAnotherNodeGroupWhenARankIsKilledAndSaysSoInOneLine)
   EXPECT_TRUE(nothing_is_left());
 }
 
-/// mpirun 4.1.4 does so now and then, when a rank dies while the ranks are still meeting.
+/// mpirun 4.1.4 hangs occasionally when a rank dies while the ranks are still connecting.
 TEST_F(UnderstudyRun, StartsAnotherNodeGroupWhenMpirunHangs) {
   if (!nodes_are_built()) GTEST_SKIP() << "built without MPI";
   const fs::path hung = folder_ / "hung";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a process may do once its sandbox is closed. Each test tries it in a process of its own, since nothing
-// gives rights back.
+// What a process may do after its sandbox is closed. Each test runs in a separate process, since a closed
+// sandbox cannot be opened again.
 #include "apps/understudy/sandbox/sandbox.h"
 
 #include <fcntl.h>
@@ -44,7 +44,7 @@ namespace fs = std::filesystem;
 using compositor::Clock;
 using compositor::FileDescriptor;
 
-/// What `attempts` says in a process of its own; it says nothing where all is as it should be.
+/// Runs `attempts` in a separate process and returns its text; empty if everything is as expected.
 std::string in_a_process(const std::function<std::string()>& attempts) {
   std::array<int, 2> channel{};
   if (::pipe(channel.data()) != 0) return "no pipe";
@@ -67,7 +67,7 @@ std::string in_a_process(const std::function<std::string()>& attempts) {
   return said;
 }
 
-/// "name: errno" where a call did not fail with `wanted`.
+/// Returns "name: error" unless the call failed with `wanted`.
 std::string refused(const char* name, long result, int wanted) {
   const int reason = errno;
   if (result < 0 && reason == wanted) return {};
@@ -78,7 +78,7 @@ std::string closed(const Sandbox& sandbox, Renderer renderer = Renderer::cpu) {
   return sandbox.close(renderer).obstacle;
 }
 
-/// Asked here: a sandbox that is closed does not let it be asked.
+/// Queried at start: a closed sandbox does not permit the query.
 const bool has_landlock = landlock_version() > 0;
 
 class ScratchFolder {
@@ -122,7 +122,8 @@ TEST(Sandbox, OpensNoFileStartsNoProgramMakesNoSocketAndTracesNobody) {
             "");
 }
 
-/// Drivers make threads before it closes. Landlock binds none of them from then on.
+/// Drivers start threads before the sandbox closes, which Landlock does not restrict: the sandbox must still
+/// hold them.
 TEST(Sandbox, HoldsThreadsThatWereThereBefore) {
   const ScratchFolder named;
   const ScratchFolder home;
@@ -152,7 +153,7 @@ TEST(Sandbox, HoldsThreadsThatWereThereBefore) {
   EXPECT_EQ(what_a_thread_may({}, Renderer::graphics_card), "");
 }
 
-/// Shaders are compiled, and rays cast, on threads and into executable memory.
+/// Compiling shaders and casting rays need threads and executable memory.
 TEST(Sandbox, StartsThreadsAndMakesMemoryExecutable) {
   EXPECT_EQ(
       in_a_process([] {
@@ -190,7 +191,7 @@ TEST(Sandbox, WritesFilesOnlyIntoFoldersThatWereNamed) {
   EXPECT_EQ(fs::exists(named / "b"), has_landlock);
 }
 
-/// A kernel takes 16 restrictions at most.
+/// The kernel accepts at most 16 nested Landlock rulesets.
 TEST(Sandbox, OpensNothingWhereLandlockDoesNotTakeEffect) {
   const ScratchFolder named;
   for (const Renderer renderer : {Renderer::cpu, Renderer::graphics_card}) {
@@ -210,7 +211,7 @@ TEST(Sandbox, OpensNothingWhereLandlockDoesNotTakeEffect) {
   }
 }
 
-/// A graphics card's driver opens devices and libraries' files, where Landlock bounds it to them.
+/// The driver of a graphics card opens devices and library files, which Landlock restricts to known paths.
 TEST(Sandbox, ReadsForAGraphicsCardWhatLandlockBounds) {
   const ScratchFolder home;
   make_file(home / "secret");
@@ -228,7 +229,7 @@ TEST(Sandbox, ReadsForAGraphicsCardWhatLandlockBounds) {
             "");
 }
 
-/// A terminal takes what is to be typed into it by an ioctl.
+/// An ioctl can inject input into a terminal.
 TEST(Sandbox, MakesNoIoctlsButThoseOfGraphicsCards) {
   EXPECT_EQ(in_a_process([] {
               const int device = ::open("/dev/null", O_RDWR);
@@ -236,7 +237,7 @@ TEST(Sandbox, MakesNoIoctlsButThoseOfGraphicsCards) {
               char typed = 'x';
               said += refused("TIOCSTI", ::ioctl(device, TIOCSTI, &typed), EPERM);
               said += refused("TIOCLINUX", ::ioctl(device, TIOCLINUX, &typed), EPERM);
-              // By the kernel, and not before it.
+              // The kernel rejects these, not the sandbox.
               said += refused("DRM", ::ioctl(device, _IO('d', 0), 0), ENOTTY);
               said += refused("NVIDIA", ::ioctl(device, _IO('F', 0), 0), ENOTTY);
               return said;

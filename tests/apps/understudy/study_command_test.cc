@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy study` as its user sees it: what is wrong is said, what was measured is kept, the page shows.
+// `understudy study` as seen by its user: errors are reported, measurements are kept, the page is displayed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -49,7 +49,7 @@ class StudyCommand : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-/// Without what may change when other points come: whether a setting is on the front.
+/// The row without its last column (whether the setting is on the front), which further points may change.
 std::string key_and_figures(const std::string& row) {
   return row.substr(0, row.rfind(','));
 }
@@ -108,7 +108,7 @@ TEST_F(StudyCommand, AVolumeOfOneValueIsMeasured) {
 
 TEST_F(StudyCommand, GoesOnWhereItWasKilled) {
   const std::string all = command("--scene thin-fog --size 96");
-  // Killed once some settings are measured: no chance to tidy up.
+  // Killed after some settings have been measured, without an opportunity to clean up.
   shell("(exec " + all + ") & pid=$!; until [ \"$(cat " + folder_.file("out/study.csv") +
         " 2>/dev/null | wc -l)\" -ge 4 ]; do kill -0 $pid || break; done; kill -9 $pid; wait $pid");
   const std::vector<std::string> before = rows();
@@ -125,7 +125,7 @@ TEST_F(StudyCommand, GoesOnWhereItWasKilled) {
     for (int field = 0; field < 4; ++field) end = row.find(',', end) + 1;
     EXPECT_TRUE(settings.insert(row.substr(0, end)).second) << row << " is there twice";
   }
-  // Once more: nothing is measured again.
+  // When repeated, nothing is measured again.
   study("--scene thin-fog --size 96");
   EXPECT_EQ(rows(), after);
 }
@@ -143,7 +143,7 @@ TEST_F(StudyCommand, ThePageShowsInABrowser) {
   ASSERT_EQ(shown.status, 0) << shown.output;
   const RgbaImage page = read_image(screenshot);
   EXPECT_EQ(page.width, 1300);
-  // Text is dark, the plots' lines are blue and orange: of each there is plenty.
+  // Text is dark, the plots' lines are blue and orange: there must be many pixels of each.
   std::array<int, 3> pixels{};
   const auto near_colour = [](const float* pixel, const std::array<int, 3>& bytes) {
     return std::ranges::equal(std::span(pixel, 3), bytes,

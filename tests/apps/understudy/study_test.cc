@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of `understudy study`: what it measures, and what it keeps.
+// The parts of `understudy study`: its measurements, and what it stores.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ TEST(Study, SmallerStepsComeNearerToTheIntegral) {
   EXPECT_LT(points.back().error.rms, 1e-4);
 }
 
-/// Tables of other steps than a voxel's mean the medium that the reference integrates.
+/// Transfer functions for steps other than one voxel describe the medium that the reference integrates.
 TEST(Study, StiffScenesComeNearerToTheIntegralAsWell) {
   for (const char* name : {"spikes", "opaque-layers"}) {
     Scene scene(small_scene(name), 32, 2);
@@ -133,7 +133,7 @@ TEST(Study, TheFrontIsWhatNothingBeats) {
 TEST(Study, AdvantagesAreReadOffOurFront) {
   std::vector<Point> points(5);
   points[0].time_ms = 1, points[0].error.colour = 0.1;
-  points[1].time_ms = 2, points[1].error.colour = 0.2;  // beaten
+  points[1].time_ms = 2, points[1].error.colour = 0.2;  // dominated
   points[2].time_ms = 4, points[2].error.colour = 0.001;
   points[3].setting.scheme = Scheme::bare_viewer;
   points[3].time_ms = 2, points[3].error.colour = 0.01;

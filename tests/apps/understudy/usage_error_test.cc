@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a command line that cannot be parsed gets to read.
+// Error messages for command lines that cannot be parsed.
 #include "apps/understudy/option_table/usage_error.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST(UsageErrors, NameTheWordAndTheNearestRightOne) {
   EXPECT_EQ(said_of({"render", "a", "b"}), "prog: render does not take 'b'");
   EXPECT_EQ(said_of({"render"}), "prog: render: VOLUME is required");
   EXPECT_EQ(said_of({"--halp"}), "prog: there is no option '--halp'; did you mean '--help'?");
-  // What is hidden is not proposed.
+  // Hidden options and subcommands are not suggested.
   EXPECT_EQ(said_of({"run", "--formr"}), "prog: run has no option --formr");
   EXPECT_EQ(said_of({"playr"}), "prog: there is no subcommand 'playr'");
   EXPECT_EQ(said_of({"run", "--former"}), "(parsed)");

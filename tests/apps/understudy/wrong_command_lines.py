@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""wrong_command_lines.py UNDERSTUDY: hundreds of command lines that are wrong, made of the options that there are. Each must end
-with a status of its own, say which word is wrong, and, where an option takes certain words, which."""
+"""wrong_command_lines.py UNDERSTUDY: runs hundreds of invalid command lines that are derived from the existing options. Each
+must end with a proper exit status, name the invalid word, and list the valid words if the option has a fixed set."""
 
 import os
 import random
@@ -15,7 +15,7 @@ SEED = 20
 
 
 def completion():
-    """By subcommand and option, its words; none: any."""
+    """Maps (subcommand, option) to the option's valid words; an empty list: any word."""
     text = subprocess.run([UNDERSTUDY, "completion", "bash"], check=True, capture_output=True, text=True).stdout
     table = {}
     for names, words in re.findall(r"^    ('[^)]*)\) words='([^']*)'; files=", text, re.MULTILINE):
@@ -25,14 +25,14 @@ def completion():
 
 
 def misspelt(word, rng):
-    """With one letter left out, doubled, or exchanged with the next; behind the dashes."""
+    """`word` with one letter omitted, doubled, or swapped with the next one; the leading dashes stay."""
     at = rng.randrange(3, len(word) - 1)
     return rng.choice([word[:at] + word[at + 1:], word[:at] + word[at] + word[at:],
                        word[:at] + word[at + 1] + word[at] + word[at + 2:]])
 
 
 def command_lines(table):
-    """(words, what must be said)"""
+    """Yields (command line, words that the error message must contain)."""
     rng = random.Random(SEED)
     options = sorted(table)
     rest = {"run": ["--", "true"], "render": ["synthetic:4x4x4"], "compare": ["a", "b"]}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera under the hand: what an arcball promises, and that images follow the pointer.
+// Camera control: the properties of an arcball, and that images follow the pointer.
 #include "apps/understudy/view/camera.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ double difference(const ViewCamera& a, const ViewCamera& b) {
   return greatest;
 }
 
-/// Where a point of texture space is seen, in halves of the shorter side.
+/// Image position of a point in texture space, in halves of the shorter side.
 ImagePoint seen(const ViewCamera& camera, const Vec3& t, int width, int height) {
   const Matrix4 m = request_of(camera, width, height).texture_to_clip;
   std::array<double, 4> clip{};
@@ -71,7 +71,7 @@ TEST(Arcball, TurnsByTwiceTheAngleOnTheBall) {
   const ViewCamera start{{0, 0, 4, 0}, {}};
   const double angle = 0.2;
   const ViewCamera turned = rotated(start, {0, 0}, {std::sin(angle), 0});
-  // What is in front goes to the right: the camera goes to the left.
+  // What is in front moves to the right, so the camera moves to the left.
   EXPECT_NEAR(turned.orbit.azimuth, -2 * angle * 180 / std::numbers::pi, 1e-9);
   EXPECT_NEAR(turned.orbit.elevation, 0, 1e-9);
   EXPECT_NEAR(turned.orbit.roll, 0, 1e-9);
@@ -85,7 +85,7 @@ TEST(Arcball, WhatIsInFrontFollowsTheHand) {
   for (int i = 0; i < 200; ++i) {
     ViewCamera start = hand.camera();
     start.orbit.distance = 5;
-    // The point of the volume that is nearest to the eye.
+    // The point of the volume nearest to the eye.
     const Vec3 towards = volume::eye_direction(start.orbit);
     const Vec3 extent{40, 50, 120};
     Vec3 front{};

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every element that a script of the page names by its id is in the page: one that is missing stops the whole script."""
+"""Every element that a script of the page names by its id must exist: a missing element stops the whole script."""
 
 import re
 import sys

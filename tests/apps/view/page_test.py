@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""page_test.py PROGRAMS OUT: the page of `understudy view --web` in a real browser, without a screen.
+"""page_test.py PROGRAMS OUT: tests the page of `understudy view --web` in a real browser, without a screen.
 
-It is opened by its link, turned with the mouse, its transfer function is edited, a surface is lit, boxes are drawn, a node
-is killed, a series is played; screenshots go to OUT. Ends with 77 where Chromium or its driver is missing.
+The test opens the page by its link, rotates with the mouse, edits the transfer function, lights a surface, shows boxes, kills
+a node and plays a series; screenshots go to OUT. Exits with status 77 if Chromium or its driver is missing.
 """
 
 import os
@@ -55,7 +55,7 @@ class Page:
             time.sleep(0.05)
 
     def rests(self, what, after=""):
-        """An image at rest, another than `after`, and what is said of it."""
+        """Waits for an image at rest that differs from `after`, and for its figures."""
         def rests_now():
             shown = self.shown()
             busy, figures = self.driver.execute_script(
@@ -64,11 +64,11 @@ class Page:
         self.until(rests_now, what)
 
     def image(self):
-        """The image's own pixels, as the browser has them."""
+        """The image's own pixels, as held by the browser."""
         return self.driver.execute_script("return document.getElementById('image').toDataURL('image/png')")
 
     def save(self, name):
-        """Keeps the screenshot, and answers with the image that is shown."""
+        """Saves a screenshot, and returns the displayed image."""
         self.driver.save_screenshot(str(OUT / f"{name}.png"))
         return self.image()
 
@@ -103,7 +103,7 @@ def check(page, view):
     page.rests("the turned image", before)
     images["turned"] = page.save("2-turned")
 
-    # A control point is grasped where it is drawn, and lifted.
+    # Drags a control point upwards from where it is drawn.
     before = page.shown()
     editor = page.element("editor")
     place = page.driver.execute_script("""
@@ -135,7 +135,7 @@ def check(page, view):
     assert drawn, "no boxes are drawn"
     assert len(set(images.values())) == len(images), "two steps show the same image"
 
-    # A page that is loaded again shows what it showed.
+    # A reloaded page must show the same image again.
     page.driver.refresh()
     page.rests("the page once more")
     assert page.save("6-again") == images["surface"], "the page has forgotten what it showed"
@@ -155,7 +155,7 @@ def check(page, view):
 
 
 def pending(link):
-    """Without the secret there is a question and no image."""
+    """Without the secret, the page must ask for it and show no image."""
     page = Page(link.split("#")[0])
     try:
         page.until(lambda: page.element("ask").is_displayed(), "the question for the secret")
@@ -169,7 +169,7 @@ def pending(link):
 
 
 def check_time(page, _view):
-    """The time steps of a series: the slider, a step further, and Play, which comes round to the first one."""
+    """Checks the time steps of a series: the slider, the button for the next step, and Play, which wraps to the first step."""
     page.rests("the first step")
 
     def step():
@@ -205,7 +205,7 @@ def check_time(page, _view):
 
 
 def look(words, checks):
-    """`checks` on the page of `understudy view` with these words; afterwards without the secret."""
+    """Runs `checks` on the page of `understudy view` with these arguments, then opens the page without the secret."""
     view = subprocess.Popen([str(PROGRAMS / "understudy"), "view", "--web", "0", *words], stdout=subprocess.PIPE, text=True)
     try:
         link = re.search(r"http://\S+", view.stdout.readline()).group()

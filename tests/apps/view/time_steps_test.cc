@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time steps as volumes of one service: what was shown last stays, what comes next is read ahead, and memory is
-// held.
+// Time steps as volumes of one service: the most recently shown steps stay loaded, the next one is read ahead,
+// and the memory limit is kept.
 #include "apps/understudy/file_scene/time_steps.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ void ignore(const std::vector<compositor::RankLoad>& /*ranks*/) {}
 
 constexpr VolumeMemory unlimited{std::numeric_limits<std::uint64_t>::max(), false};
 
-/// Bytes that a step takes.
+/// Bytes that one step occupies.
 std::uint64_t bytes_of_one(const FileScene& scene) {
   const auto service = compositor::embedded_loading_service();
   std::uint64_t bytes = 0;
@@ -37,7 +37,7 @@ std::uint64_t bytes_of_one(const FileScene& scene) {
   return bytes;
 }
 
-/// What the service has of this step, complete; empty: nothing.
+/// The service's image of this step; empty if the step is not loaded completely.
 std::vector<float> image_of(compositor::LoadingService& service, const FileScene& scene, int step) {
   volume::TexelFigures values;
   values.low = 0;
@@ -52,7 +52,7 @@ std::vector<float> image_of(compositor::LoadingService& service, const FileScene
   }
 }
 
-/// Odd steps show one field, even ones another.
+/// Odd steps show one field, even steps another.
 TEST(TimeSteps, StayAsFarAsMemoryAllows) {
   const FileScene scene = some_series();
   const std::uint64_t one = bytes_of_one(scene);
@@ -72,7 +72,7 @@ TEST(TimeSteps, StayAsFarAsMemoryAllows) {
       EXPECT_LE(steps.loaded(), std::size_t(room)) << step;
     }
     EXPECT_EQ(steps.loaded(), std::size_t(std::min(room, steps_in_all)));
-    // The last that were shown.
+    // The steps that were shown last are still loaded.
     EXPECT_EQ(image_of(*service, scene, 3).empty(), room <= 1);
     EXPECT_EQ(image_of(*service, scene, 4).empty(), room <= 2);
     EXPECT_EQ(image_of(*service, scene, 0).empty(), room <= 4);

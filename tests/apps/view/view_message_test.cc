@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What pages ask for: every key arrives, what cannot be believed is refused, and what is believed can be drawn.
+// Requests of pages: every key is parsed, invalid requests are refused, and accepted ones can be drawn.
 #include "apps/understudy/view/view_message.h"
 
 #include <gmock/gmock.h>
@@ -137,19 +137,19 @@ TEST(ViewState, ImagesThatMoveAreAsLargeAsTheirTimeAllows) {
   EXPECT_EQ(state.size(), (std::array{1000, 800})) << "nothing is known yet";
   state.took({1000, 800}, 4 * ViewState::moving_ms);
   EXPECT_EQ(state.size(), (std::array{500, 400}));
-  // A quarter of the pixels took a quarter of the time: nothing is to be changed.
+  // A quarter of the pixels took a quarter of the time, so the size stays.
   moving.took_ms = ViewState::moving_ms;
   state.took(state.size(), ViewState::moving_ms);
   state.apply(moving);
   EXPECT_NEAR(state.size()[0], 500, 1);
-  // It gets faster, and large again.
+  // Images get faster, and therefore large again.
   for (int i = 0; i < 30; ++i) {
     state.took(state.size(), 1);
     moving.took_ms = 1;
     state.apply(moving);
   }
   EXPECT_EQ(state.size(), (std::array{1000, 800}));
-  // It gets very slow, and still there is an image.
+  // Images get very slow, but there is still an image.
   for (int i = 0; i < 30; ++i) {
     state.took(state.size(), 1e6);
     moving.took_ms = 1e6;

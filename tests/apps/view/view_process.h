@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy view --web 0`, started by a test.
+// A process `understudy view --web 0`, started by a test.
 #pragma once
 
 #include <fcntl.h>

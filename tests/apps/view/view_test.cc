@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `understudy view` as a whole: its images are those of `understudy render`, whatever viewers and nodes do.
+// `understudy view` as a whole: its images equal those of `understudy render`, whatever viewers and nodes do.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ double brightest(const RgbaImage& image) {
   return most;
 }
 
-/// Ready to be asked for images.
+/// Authenticates the client; afterwards it can request images.
 Json greeted(WebClient& client, const ViewProcess& process) {
   client.greet(process.secret());
   return client.wait_for("volume").json;
@@ -74,7 +74,7 @@ TEST_F(View, AtRestABrowserHasTheImageOfRender) {
   EXPECT_EQ(greatest_difference(decoded(client.image({{"camera", some_camera}}).image),
                                 rendered(common + "--transfer-function rainbow --camera=-50,35,3,12")),
             0);
-  // A table from the page, light, a surface and another step.
+  // A transfer function from the page, light, a surface and another step.
   const Json table{{"knots", volume.at("tables").at("engine")}};
   EXPECT_EQ(greatest_difference(
                 decoded(client.image({{"table", table}, {"light", true}, {"step", 0.5}}).image),
@@ -140,7 +140,7 @@ TEST_F(View, WhileItMovesTheNewestCameraWinsAndNothingQueuesUp) {
   }
   std::printf("%d images for %d requests\n", images, requests);
   EXPECT_LT(images, requests);
-  // All that the hand did counts nevertheless.
+  // All movements must be included in the final camera.
   const Json camera = client.image({}).json.at("camera");
   EXPECT_EQ(
       greatest_difference(decoded(last),
@@ -161,7 +161,7 @@ TEST_F(View, BrowsersHaveCamerasOfTheirOwnAndMayComeAndGoAtAnyTime) {
   EXPECT_NE(second.image({{"camera", some_camera}}).image, before);
   EXPECT_EQ(first.image({}).image, before);
   const std::size_t descriptors = process.descriptors();
-  // Pages that are loaded again and again, while their images are made or on their way.
+  // Pages are reloaded repeatedly while their images are being rendered or sent.
   for (int i = 0; i < 40; ++i) {
     WebClient client(process.port());
     greeted(client, process);
@@ -214,7 +214,7 @@ TEST_F(View, NodesThatDieAreSaidAndReplaced) {
   const std::vector<pid_t> nodes = nodes_of(process.id());
   ASSERT_EQ(nodes.size(), 2U);
   kill(nodes.back(), SIGKILL);
-  // It is noticed when an image is wanted.
+  // The loss is detected when the next image is requested.
   client.send({{"sequence", 100}});
   const Json lost = client.wait_for("status").json;
   EXPECT_EQ(lost.at("state"), "lost");
@@ -245,7 +245,7 @@ TEST_F(View, AWindowSavesTheImageOfRender) {
 TEST_F(View, OfASeriesEveryTimeStepHasTheImageOfItsFile) {
   const std::vector<std::string> files{"synthetic:40x36x32:u8:lobes", "synthetic:40x36x32:u8:gyroid",
                                        "synthetic:40x36x32:u8:shells"};
-  // Of values, so that it means the same in all of them.
+  // Positions are values, so that the transfer function means the same in all steps.
   const std::string common = " --size 120x90 --transfer-function " +
                              folder_.write("t.json", R"({"positions": "values", "knots": [
                                {"at": 0, "colour": [0, 0, 1], "opacity": 0},

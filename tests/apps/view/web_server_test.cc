@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The server against those who should not be let in, or not for long. Sockets are real.
+// The web server against clients that must be refused or disconnected. Uses real sockets.
 #include "apps/understudy/view/web_server.h"
 
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ using ::testing::HasSubstr;
 
 constexpr const char* secret = "0123456789abcdef";
 
-/// So long that no machine is too busy; what is waited for comes at once.
+/// Long enough for any busy machine; normally the condition holds immediately.
 constexpr auto patience = 30s;
 
 class WebServerTest : public ::testing::Test {
@@ -58,7 +58,7 @@ class WebServerTest : public ::testing::Test {
     socket.connect(tcp::endpoint(boost::asio::ip::make_address("127.0.0.1"), std::uint16_t(server_->port())));
     return socket;
   }
-  /// Until the server closes.
+  /// Reads until the server closes the connection.
   static std::string all_of(tcp::socket& socket) {
     std::string text;
     boost::system::error_code error;
@@ -146,7 +146,7 @@ TEST_F(WebServerTest, OnlyWhoHasTheSecretIsHeard) {
     EXPECT_THROW(client.receive(), system_error);
   }
   {
-    // What another conversation proved is worth nothing in this one.
+    // A proof from one connection is not valid in another.
     WebClient first(server_->port()), second(server_->port());
     const std::string challenge = first.receive().json.at("challenge");
     EXPECT_NE(second.receive().json.at("challenge"), challenge);
@@ -178,7 +178,7 @@ TEST_F(WebServerTest, SilentAndSlowClientsAreClosed) {
   start(limits);
   tcp::socket silent = connected();
   EXPECT_EQ(all_of(silent), "");
-  // A byte now and then does not help.
+  // Sending a byte now and then does not prolong the limit.
   tcp::socket slow = connected();
   boost::system::error_code error;
   const std::string start_of_request = "GET / HTTP/1.1\r\nHost: localhost\r\nX: ";
@@ -202,7 +202,7 @@ TEST_F(WebServerTest, AViewerThatDoesNotReadIsDropped) {
   WebClient client(server_->port());
   client.greet(secret);
   ASSERT_TRUE(comes_true([&] { return joined_ == 1; }));
-  // More than sockets buffer: it cannot leave.
+  // More than the socket buffers hold, so it cannot be sent.
   server_->send_image(1, std::vector<std::byte>(std::size_t(64) << 20U));
   EXPECT_TRUE(comes_true([&] { return left_ == 1; }));
   EXPECT_EQ(images_, 0);
@@ -229,7 +229,7 @@ int own_descriptors() {
   return int(std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {}));
 }
 
-/// As many descriptors as the system lets this process have.
+/// Raises the descriptor limit to the maximum that the system allows.
 void raise_descriptor_limit() {
   rlimit limit{};
   getrlimit(RLIMIT_NOFILE, &limit);
@@ -243,7 +243,7 @@ TEST_F(WebServerTest, AFloodOfUnauthenticatedClientsTakesNobodysPlaceAndLeavesNo
   WebClient viewer(server_->port());
   viewer.greet(secret);
   viewer.receive();
-  connected();  // this side of sockets needs descriptors of its own
+  connected();  // the client side of sockets needs descriptors, too
   const int before = own_descriptors();
   int most = 0;
   {
@@ -252,7 +252,7 @@ TEST_F(WebServerTest, AFloodOfUnauthenticatedClientsTakesNobodysPlaceAndLeavesNo
       pending_clients.push_back(connected());
       if (i % 50 == 49) {
         std::this_thread::sleep_for(5ms);
-        // Both ends are this process's.
+        // Both ends belong to this process.
         most = std::max(most, own_descriptors() - before - int(pending_clients.size()));
       }
     }

@@ -29,7 +29,7 @@ TEST(Camera, LooksAtTheOriginFromItsDistance) {
 TEST(Camera, AzimuthZeroLooksAlongYAndElevationNinetyDown) {
   EXPECT_NEAR(view_direction({0, 0, 2, false})[1], 1, 1e-12);
   EXPECT_NEAR(view_direction({0, 90, 2, false})[2], -1, 1e-12);
-  // From azimuth 90 the eye stands at +x.
+  // At azimuth 90 the eye is at +x.
   EXPECT_NEAR(view_direction({90, 0, 2, false})[0], -1, 1e-12);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the viewer writes with --describe is enough to recompute its image without OpenGL: an emulation in
-// double precision that knows nothing but the description and the volume file agrees with it.
+// The viewer's --describe output suffices to recompute its image without OpenGL: an emulation in double
+// precision that uses only the description and the volume file agrees with the image.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,9 +22,9 @@ using Vec3 = std::array<double, 3>;
 
 constexpr int edge = 32;
 
-// In steps of 8 bits. Every slice rounds each channel once, by up to half a step, and what lies in front of it
-// weakens the error: with 54 slices 0.6 RMS and 5.6 at most were measured; a sample half a voxel off costs ten
-// times that.
+// In steps of 8 bits. Every slice rounds each channel once, by up to half a step, and slices in front attenuate
+// the error. With 54 slices, an RMS of 0.6 and a maximum of 5.6 were measured; samples displaced by half a
+// voxel cause ten times as much.
 constexpr double rms_limit = 1.0;
 constexpr double max_limit = 8.0;
 

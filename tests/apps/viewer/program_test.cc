@@ -24,8 +24,8 @@ using testing::Not;
 
 constexpr int image_edge = 40;
 
-// A hollow ball around an off-centre dense core, in bytes; smooth, so that interpolating before or after
-// classification differs little.
+// A hollow 8-bit ball around a dense off-centre core; smooth, so that interpolation before and after
+// classification differ little.
 std::vector<std::uint8_t> ball() {
   std::vector<std::uint8_t> voxels;
   for (int z = 0; z < image_edge; ++z)
@@ -97,8 +97,8 @@ TEST(Program, EveryModeDrawsTheBallAndTheModesAgree) {
   const Difference profile = difference(images[1], images[2]);
   std::printf("rgba against table: PSNR %.2f dB; table against core: PSNR %.2f dB\n", classification.psnr,
               profile.psnr);
-  // The order of interpolation and classification is the only difference between rgba and table, and there is
-  // none but rounding between table and core.
+  // rgba and table differ only in the order of interpolation and classification, table and core only by
+  // rounding.
   EXPECT_GT(classification.psnr, 30);
   EXPECT_GT(profile.psnr, 50);
 }
@@ -107,7 +107,7 @@ TEST(Program, EveryOtherModeShowsTheSameBall) {
   const TemporaryFolder folder;
   const std::string file = ball_file(folder);
   const Image table = image_of(folder, {file});
-  // Bricks differ by rounding, pre-integration and stacks by what lies between samples, light by shades.
+  // Bricks differ by rounding, pre-integration and stacks by what lies between samples, light by shading.
   for (const auto& [mode, likeness] :
        {std::pair{"time", 50.0}, {"bricks", 45.0}, {"preint", 30.0}, {"stacks", 24.0}, {"lit", 20.0}}) {
     const Difference d = difference(table, image_of(folder, {file, "--mode", mode}));
@@ -121,7 +121,7 @@ TEST(Program, EveryOtherModeShowsTheSameBall) {
 
 TEST(Program, BricksOfALargeVolumeShowNoSeams) {
   const TemporaryFolder folder;
-  // Fog whose density changes slowly: a seam would be the only edge within it.
+  // Fog whose density changes slowly: a seam would be the only edge in the image.
   std::vector<std::uint8_t> voxels;
   constexpr int large = 100;
   for (int z = 0; z < large; ++z)
@@ -185,7 +185,7 @@ TEST(Program, FrameAndAxesAreOutsideTheVolumeAndCanBeSwitchedOff) {
 
 TEST(Program, SolidFrameHidesAndIsHiddenByTheVolume) {
   const TemporaryFolder folder;
-  // Opaque throughout, so that only frame lines in front of it can be seen over it.
+  // Opaque throughout, so that only frame lines in front of the block are visible over it.
   const std::string file = folder.write("block.16x16x16", std::string(std::size_t{16} * 16 * 16, '\xff'));
   const std::vector<std::string> arguments = {file, "--preset", "step"};
   std::vector<std::string> bare = arguments;

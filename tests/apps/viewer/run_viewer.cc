@@ -37,7 +37,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return result;
 }
 
-// The graphics libraries of the system keep memory until the process ends; only our own mistakes should count.
+// The system's graphics libraries keep memory until the process ends, so leaks are not checked here.
 std::vector<std::string> viewer_environment(const std::string& display) {
   std::vector<std::string> result = {"LIBGL_ALWAYS_SOFTWARE=1", "ASAN_OPTIONS=detect_leaks=0"};
   if (!display.empty()) result.push_back("DISPLAY=" + display);

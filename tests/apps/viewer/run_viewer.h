@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the viewer program as a user would, and looks at what it leaves.
+// Runs the viewer program as a user would, and reads its results.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 namespace viewer_test {
 
 struct Outcome {
-  int status = -1;  ///< exit status; -1 when it ended by a signal
+  int status = -1;  ///< exit status; -1 if a signal ended it
   std::string out;
   std::string err;
 };
 
-/// With LIBGL_ALWAYS_SOFTWARE=1, and `display` as DISPLAY (none when it is empty).
+/// Sets LIBGL_ALWAYS_SOFTWARE=1, and DISPLAY to `display` (unset if that is empty).
 Outcome run_viewer(const std::vector<std::string>& arguments, const std::string& display = "");
 
 /// The same for any program found on PATH.
@@ -29,12 +29,12 @@ struct Image {
 Image read_png(const std::string& path);
 
 struct Difference {
-  double max = 0;   ///< of a channel, 0 to 255
+  double max = 0;   ///< of one channel, 0 to 255
   double rms = 0;   ///< over all channels, 0 to 255
-  double psnr = 0;  ///< dB; infinite when equal
+  double psnr = 0;  ///< dB; infinite if equal
 };
 
-/// `a` and `b` are channel values from 0 to 255 of images of one size.
+/// `a` and `b` are channel values from 0 to 255 of two images of the same size.
 Difference difference(const std::vector<double>& a, const std::vector<double>& b);
 Difference difference(const Image& a, const Image& b);
 

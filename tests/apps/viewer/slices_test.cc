@@ -96,7 +96,7 @@ TEST(Slices, TogetherFillTheBoxFromAnyDirection) {
     worst = std::max(worst, std::abs(sum / volume - 1));
   }
   std::printf("area times spacing against the box's volume: %.2e\n", worst);
-  // A wrong order of vertices or a missed corner would lose whole triangles.
+  // A wrong vertex order or a missed corner would lose whole triangles.
   EXPECT_LT(worst, 1e-3);
 }
 

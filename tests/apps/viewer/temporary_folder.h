@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder for one test's files, removed with it.
+// A temporary folder for one test's files, removed together with this object.
 #pragma once
 
 #include <cstdlib>

@@ -34,7 +34,7 @@ TEST(TransferFunction, PresetsStateOpacitiesAndColoursInRange) {
 }
 
 TEST(TransferFunction, OpacityCorrectionKeepsTheOpacityOfAWholePath) {
-  // Two slices at half the reference distance absorb what one at the reference distance does.
+  // Two slices at half the reference distance absorb as much as one at the reference distance.
   for (const Preset& preset : presets()) {
     const Table whole = make_table(preset, 1.0, false), half = make_table(preset, 0.5, false);
     for (std::size_t i = 0; i < whole.size(); ++i) {

@@ -32,8 +32,8 @@ std::optional<VirtualDisplay> VirtualDisplay::start(std::string without) {
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
   std::string name;
-  // The server writes its number and a line feed once it takes clients, and closes the pipe when it cannot
-  // start.
+  // The server writes its display number and a newline when it accepts clients, and closes the pipe if it
+  // cannot start.
   for (char c = 0; failed == 0 && read(ends[0], &c, 1) == 1 && c != '\n';) name += c;
   close(ends[0]);
   if (failed != 0) return std::nullopt;

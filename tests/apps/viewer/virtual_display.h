@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An X server without a screen, for tests of the window.
+// An X server without a screen (Xvfb), for tests of the window.
 #pragma once
 
 #include <sys/types.h>
@@ -11,14 +11,14 @@ namespace viewer_test {
 
 class VirtualDisplay {
  public:
-  /// Starts Xvfb on a display number that it chooses itself, without the X extension that is named, if one is;
-  /// nothing when Xvfb is not installed.
+  /// Starts Xvfb on a display number that Xvfb chooses, without the X extension `without` if that is not empty.
+  /// Returns nullopt if Xvfb is not installed.
   static std::optional<VirtualDisplay> start(std::string without = "");
   VirtualDisplay(VirtualDisplay&& other) noexcept;
   VirtualDisplay& operator=(VirtualDisplay&&) = delete;
   ~VirtualDisplay();
 
-  /// As for the environment variable DISPLAY.
+  /// Value for the environment variable DISPLAY.
   const std::string& name() const { return name_; }
 
  private:

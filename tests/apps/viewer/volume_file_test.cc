@@ -61,7 +61,7 @@ std::string message_of(const std::string& path, const VolumeHints& hints = {}) {
   return "(loaded)";
 }
 
-// A NIfTI-1 header for one file, 2x3x4 voxels.
+// A NIfTI-1 header for a single file, 2x3x4 voxels.
 nifti_1_header nifti_header(short datatype, short bits) {
   nifti_1_header header{};
   header.sizeof_hdr = sizeof header;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One context after another: each draws a volume as slices, twice, and is destroyed.
+// Draws in one context after another: each draws a volume as slices, twice, and is destroyed.
 //
 //   contexts immediate|buffer|list COUNT
 //
-// Prints how many KiB of memory each context has left behind, and draws nothing that anybody sees.
+// Prints how many KiB of memory each context left behind; draws off screen.
 #include <EGL/egl.h>
 #define GL_GLEXT_PROTOTYPES
 #include <GL/gl.h>
@@ -137,7 +137,7 @@ int main(int argc, char** argv) {
     eglDestroyContext(display, context);
     resident.push_back(resident_kib());
   }
-  // What is made once is there after a third of them. An allocator keeps more at one time than at another, so
+  // One-time allocations have been made after a third of the contexts. The allocator's reserve varies, hence
   // medians.
   const std::size_t tenth = resident.size() / 10;
   const long before = median(std::span(resident).subspan(resident.size() / 3, tenth));

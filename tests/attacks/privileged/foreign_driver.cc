@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A driver that says that it was loaded.
+// A driver that reports that it was loaded.
 #include <cstdio>
 
 [[gnu::constructor]] static void loaded() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens EGL and asks it for its driver; says whether the kernel takes it for a program with more rights than
-// its user has.
+// Opens EGL and queries its driver; prints whether the kernel treats this process as more privileged than its
+// user (AT_SECURE).
 #include <dlfcn.h>
 #include <sys/auxv.h>
 

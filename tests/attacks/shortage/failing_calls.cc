@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Preloaded: one call that Understudy makes fails, once in a process.
+// Preloaded library that makes one call of Understudy fail, once per process.
 //
 //   FAIL_WHAT=memory   malloc, calloc, realloc, posix_memalign, aligned_alloc and operator new
-//   FAIL_WHAT=system   calls of the operating system: files, mappings, sockets, threads
-//   FAIL_NTH=N         the Nth such call of the process fails, from 0
-//   FAIL_COUNT=FILE    how many there were stands there afterwards, a number of 8 bytes, however the process
-//   ends
+//   FAIL_WHAT=system   system calls: files, mappings, sockets, threads
+//   FAIL_NTH=N         the Nth such call of the process fails, counted from 0
+//   FAIL_COUNT=FILE    receives the number of such calls as 8 bytes, however the process ends
 //
-// A call is Understudy's when the core or the entry library makes it, or a library of the C or C++ language, of
-// tasks, of text or of compression on behalf of one of them. The driver's calls, and the program's own, are
-// left alone. So are the threads that oneTBB starts: its exception leaves a lock of its own locked when one
-// cannot be started, in tbb::detail::r1::spawn, and no caller can mend that
-// (compositor/service/worker_threads.h tries whether they can be started before).
+// A call is Understudy's if it is made by the core or the entry library, or on their behalf by a library for C,
+// C++, tasks, text or compression. Calls of the driver and of the program itself do not fail. Neither does the
+// start of oneTBB's threads: if a thread cannot be started, the exception leaves a lock in
+// tbb::detail::r1::spawn locked, which no caller can repair (compositor/service/worker_threads.h checks
+// beforehand whether threads can be started).
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -48,7 +47,7 @@ enum class Kind { memory, system };
 
 thread_local bool inside = false;
 
-/// Its own calls are none of Understudy's.
+/// While one exists, calls are this library's own and do not count as Understudy's.
 class Inside {
  public:
   Inside() { inside = true; }
@@ -78,7 +77,7 @@ Owner owner_of(const void* address) {
   dl_find_object found;
   if (_dl_find_object(const_cast<void*>(address), &found) != 0 || found.dlfo_link_map->l_name == nullptr)
     return Owner::nobody;
-  // The last answers: nearly all calls come from the same few libraries.
+  // Caches the last results: almost all calls come from the same few libraries.
   struct Known {
     const void* map;
     Owner owner;
@@ -121,7 +120,7 @@ struct Plan {
 
 Count calls_unless_kept = 0;
 
-/// In the file, which keeps it when the process is killed.
+/// The counter is mapped from the file, so that it survives when the process is killed.
 Count* kept_count(const char* path) {
   const int file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   void* const memory = file >= 0 && ftruncate(file, sizeof(Count)) == 0
@@ -154,10 +153,10 @@ bool fails(Kind kind, const void* caller) {
   if (!plan().counts || plan().kind != kind || !is_understudys(caller)) return false;
   if (plan().calls->fetch_add(1, std::memory_order_relaxed) != plan().nth) return false;
   constexpr char said[] = "A CALL FAILS\n";
-  // Not by write(), which asks dlsym() for the C library's at its first use: dlsym() frees the state of
-  // dlerror(), and dlerror() may be what has asked for memory.
+  // Not write(), which looks up the C library's function with dlsym() at its first use: dlsym() frees the state
+  // of dlerror(), and dlerror() may be the function that requested the memory.
   (void)!syscall(SYS_write, 2, said, sizeof said - 1);
-  // For a debugger, and for whoever wants to see where.
+  // For debugging: shows where the call fails.
   if (getenv("FAIL_ABORT") != nullptr) abort();
   return true;
 }
@@ -267,7 +266,7 @@ void* aligned_alloc(std::size_t alignment, std::size_t size) {
   return nullptr;
 }
 
-/// A function of the C library that answers with `failure` and sets `error`.
+/// A function of the C library that fails by returning `failure` and setting `error`.
 #define SYSTEM_CALL(result, name, parameters, arguments, failure, error)       \
   result name parameters {                                                     \
     static result(*const real) parameters = next<result(*) parameters>(#name); \

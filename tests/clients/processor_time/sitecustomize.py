@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""time.time() tells what this process has had of the processor. ./run modes --simultaneous puts this folder into PYTHONPATH:
-the viewers' scripts time their frames by time.time(), and two viewers share a processor there."""
+"""Makes time.time() return this process's processor time. ./run modes --simultaneous adds this folder to PYTHONPATH: the
+viewers' scripts time their frames with time.time(), and two viewers share a processor there."""
 
 import time
 

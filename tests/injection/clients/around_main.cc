@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// around_main destroyed|current [volume]: OpenGL before main, from a constructor, and after it, from a handler
-// of atexit and a destructor; the context is destroyed at main's end, or still current. Mesa's llvmpipe has
-// taken itself apart by then; its softpipe draws on. But Mesa has freed its table of pixel formats, and reads
-// it all the same (_mesa_format_from_array_format): after main no pixels are sent or read, and samples are
-// counted instead.
+// around_main destroyed|current [volume]: uses OpenGL before main, from a constructor, and after it, from an
+// atexit handler and a destructor. The context is destroyed at main's end, or still current. Mesa's llvmpipe is
+// shut down by then; its softpipe still draws. But Mesa has freed its table of pixel formats and still reads it
+// (_mesa_format_from_array_format): after main, pixels are neither sent nor read, and samples are counted
+// instead.
 #include <string.h>
 
 #include <functional>
@@ -20,7 +20,7 @@ GLuint board = 0;
 GLuint ball = 0;
 bool current = false;
 
-/// How many samples reached the frame buffer while `draw` ran.
+/// Number of samples that reached the framebuffer while `draw` ran.
 GLuint samples_of(const std::function<void()>& draw) {
   GLuint query = 0;
   glGenQueries(1, &query);

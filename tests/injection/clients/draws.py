@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OpenGL from Python, with nothing but ctypes: opens the libraries by the names that programs use, draws and reads back.
+"""OpenGL from Python with ctypes only: opens the libraries by the names that programs use, draws and reads back.
 
     draws.py GL [EGL]      "libGL.so.1", "find" (ctypes.util.find_library), or an absolute path
 """

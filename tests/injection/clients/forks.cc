@@ -11,7 +11,7 @@ using namespace client;
 
 namespace {
 
-/// Runs `act` in a child that then leaves by `leave`, and waits for it.
+/// Runs `act` in a child that then ends by `leave`, and waits for it.
 template <class Act>
 void in_child(Act act, void (*leave)(int)) {
   fflush(stdout);
@@ -66,16 +66,16 @@ void child_only_exits() {
 void child_leaves_at_once() {
   with_context([] {}, _exit);
 }
-/// On another display than the parent's, whose driver's threads a child does not have.
+/// On a different display than the parent's, because the child lacks the threads of the parent's driver.
 void child_draws_anew() {
   with_context([] { draw_anew("child", 4, Platform::device); }, _exit);
 }
-/// With a driver that has no threads (LP_NUM_THREADS=0) a child may even go on with its parent's context.
+/// With a driver without threads (LP_NUM_THREADS=0), a child can even continue to use its parent's context.
 void child_goes_on() {
   with_context([] { show("child", 5); }, _exit);
 }
 
-/// The child's exit is the last that happens.
+/// The child exits after everything else.
 void child_outlives_parent() {
   const Offscreen offscreen;
   offscreen.make_current();

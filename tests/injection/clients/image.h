@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An image made of many kinds of calls, the number that stands for its pixels, and a volume in slices.
+// An image made of many kinds of calls, a digest of its pixels, and a volume in slices.
 #pragma once
 
 #define GL_GLEXT_PROTOTYPES
@@ -27,7 +27,7 @@ inline std::vector<unsigned char> read_pixels() {
   return pixels;
 }
 
-/// A checkerboard of 8 x 8 texels. `seed` makes images differ.
+/// A checkerboard of 8 x 8 texels. `seed` makes images different.
 inline GLuint checkerboard(int seed) {
   unsigned char texels[8 * 8 * 4];
   for (int i = 0; i < 8 * 8; ++i) {
@@ -86,7 +86,7 @@ inline void draw_image(GLuint texture, int seed) {
   glDisable(GL_SCISSOR_TEST);
 }
 
-/// The whole of it: draws, reads back, and says which image came out.
+/// Draws an image, reads it back, and prints its digest.
 inline void show(const char* name, int seed) {
   const GLuint texture = checkerboard(seed);
   draw_image(texture, seed);
@@ -119,7 +119,7 @@ inline GLuint ball_texture() {
   return texture;
 }
 
-/// Slices through a 3-D texture, back to front: what Understudy is for.
+/// Slices through a 3-D texture, back to front: a volume that Understudy substitutes.
 inline void draw_volume(GLuint texture, double angle) {
   constexpr int slices = 40;
   glViewport(0, 0, image_size, image_size);

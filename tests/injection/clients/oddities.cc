@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// oddities SCENE: lawful but unusual lives of contexts.
+// oddities SCENE: valid but unusual lifetimes of contexts.
 #include <pthread.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@ using namespace client;
 
 namespace {
 
-/// Without a context OpenGL does nothing; whatever it does, it must do the same under an injection method.
+/// Without a context OpenGL does nothing; under an injection method the result must be the same.
 void no_context() {
   glClear(GL_COLOR_BUFFER_BIT);
   GLuint texture = 7;
@@ -34,7 +34,7 @@ void* draw_and_end(void* offscreen) {
   return nullptr;  // the context stays current
 }
 
-/// Mesa's EGL keeps such a context for the thread that is gone: nobody else can have it, but it can be
+/// Mesa's EGL keeps such a context for the ended thread: no other thread can make it current, but it can be
 /// destroyed.
 void thread_ends_with_context() {
   const Offscreen main_context;
@@ -50,7 +50,7 @@ void thread_ends_with_context() {
   }
 }
 
-/// eglGetProcAddress for all that is drawn with, as toolkits do.
+/// Uses eglGetProcAddress for all functions that draw, as toolkits do.
 void by_address() {
   const Offscreen offscreen;
   offscreen.make_current();

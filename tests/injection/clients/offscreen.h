@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A context of desktop OpenGL with a small framebuffer of its own, by EGL and without a window system.
+// A desktop OpenGL context with a small framebuffer, by EGL and without a window system.
 #pragma once
 
 #include <EGL/egl.h>
@@ -9,9 +9,9 @@
 
 namespace client {
 
-constexpr int size = 64;  ///< of every framebuffer, both ways
+constexpr int size = 64;  ///< width and height of every framebuffer
 
-/// Mesa has several displays that need no window system; each is a driver of its own in the process.
+/// Mesa has several displays that need no window system; each has a separate driver in the process.
 enum class Platform : EGLenum { surfaceless = EGL_PLATFORM_SURFACELESS_MESA, device = EGL_PLATFORM_DEVICE_EXT };
 
 [[noreturn]] inline void give_up(const char* what) {
@@ -48,7 +48,7 @@ class Offscreen {
   Offscreen& operator=(const Offscreen&) = delete;
 
   void make_current() const {
-    eglBindAPI(EGL_OPENGL_API);  // the choice belongs to the thread
+    eglBindAPI(EGL_OPENGL_API);  // the current API is per thread
     if (!eglMakeCurrent(display_, surface_, surface_, context_)) give_up("eglMakeCurrent");
   }
   void release() const { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }

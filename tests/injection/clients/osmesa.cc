@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// osmesa FILE: draws images and then a volume through OSMesa, which it is linked with. FILE gets the last
-// image of the volume; a second argument `depth` has it print the depth buffer's bytes too.
+// osmesa FILE: draws images and then a volume through OSMesa, with which it is linked. Writes the last image of
+// the volume to FILE; with a second argument `depth` it also prints the depth buffer's bytes.
 #include <GL/osmesa.h>
 #include <string.h>
 
@@ -47,7 +47,7 @@ int main(int count, char** arguments) {
   draw_image(texture, 8);
   OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0);
   printf("released: %016lx, current %d\n", digest(array), OSMesaGetCurrentContext() == nullptr);
-  glClear(GL_COLOR_BUFFER_BIT);  // nobody's
+  glClear(GL_COLOR_BUFFER_BIT);  // without a context
   OSMesaDestroyContext(second);
   current(first);
   show("read back", 9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contexts of OSMesa and of EGL by turns on one thread: two OpenGLs in one program.
+// Alternates contexts of OSMesa and of EGL on one thread: two OpenGL libraries in one program.
 #include <GL/osmesa.h>
 
 #include "image.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// osmesa_opened LIBRARY dlsym|address: opens OSMesa and asks the loader, or OSMesaGetProcAddress, for all else.
+// osmesa_opened LIBRARY dlsym|address: opens OSMesa and looks up functions with dlsym or OSMesaGetProcAddress.
 #include <GL/osmesa.h>
 #include <dlfcn.h>
 #include <stdio.h>

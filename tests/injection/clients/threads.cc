@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// threads shared|apart|volumes: two threads, each with a context of its own that shares objects with the other
-// or does not, draw many images at the same time.
+// threads shared|apart|volumes: two threads draw many images at the same time, each with its own context, which
+// shares objects with the other one or not.
 #include <pthread.h>
 #include <sched.h>
 #include <string.h>
@@ -13,7 +13,7 @@
 using namespace client;
 
 #if defined(__SANITIZE_ADDRESS__)
-/// What Mesa keeps until the process ends is not ours to free.
+/// Suppresses leak reports for memory that Mesa keeps until the process ends.
 extern "C" [[gnu::visibility("default")]] const char* __lsan_default_suppressions();
 const char* __lsan_default_suppressions() {
   return "leak:_dri.so\nleak:libEGL_mesa\nleak:libLLVM\n";
@@ -22,7 +22,7 @@ const char* __lsan_default_suppressions() {
 
 namespace {
 
-constexpr int images = 200;  // of some 60 calls each
+constexpr int images = 200;  // of about 60 calls each
 constexpr int volumes = 6;
 
 struct Player {
@@ -39,7 +39,7 @@ std::atomic<int> ready = 0;
 void* play(void* argument) {
   auto& player = *static_cast<Player*>(argument);
   player.offscreen->make_current();
-  // Both begin at the same time.
+  // Both threads start at the same time.
   ++ready;
   while (ready < 2) sched_yield();
   if (player.draws_volumes) {
@@ -56,7 +56,7 @@ void* play(void* argument) {
       player.digests = player.digests * 31 + digest(read_pixels());
       glDeleteTextures(1, &own);
       if (i % 8 == 0) player.offscreen->swap();
-      // Contexts come and go while the other thread draws.
+      // Contexts are made and destroyed while the other thread draws.
       if (i % 50 == 0) {
         const Offscreen passing(player.offscreen);
         passing.make_current();
@@ -70,8 +70,8 @@ void* play(void* argument) {
   return nullptr;
 }
 
-/// TBB is not instrumented: ThreadSanitizer does not see it hand a task to a worker. On one processor TBB has
-/// no workers, and all that the two threads share is ours.
+/// TBB is not instrumented: ThreadSanitizer does not see how it passes a task to a worker. On one processor TBB
+/// has no workers, so everything that the two threads share is Understudy's.
 void stay_on_one_processor() {
 #if defined(__SANITIZE_THREAD__)
   cpu_set_t one;

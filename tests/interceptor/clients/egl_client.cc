@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program of EGL that needs no display: handles are plain numbers, and the test driver takes them.
+// An EGL program that needs no display: handles are plain numbers, which the test driver accepts.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GL/gl.h>

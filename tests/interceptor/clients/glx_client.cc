@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program of GLX that needs no X server: handles are plain numbers, and the test driver takes them.
+// A GLX program that needs no X server: handles are plain numbers, which the test driver accepts.
 #include <GL/glx.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -54,7 +54,7 @@ void same_again() {
   current(context, 11);
 }
 
-/// The first context of a group goes before the second was ever current.
+/// The first context of a group is destroyed before the second one was ever current.
 void share_group() {
   GLXContext first = create();
   current(first, 10);
@@ -110,7 +110,7 @@ void* clear_and_end(void* context) {
   return nullptr;
 }
 
-/// The context is still current when its thread ends, and is destroyed by another.
+/// The context is still current when its thread ends, and is destroyed by another thread.
 void thread_ends() {
   GLXContext context = create();
   pthread_t thread;
@@ -167,7 +167,7 @@ void forked() {
   release();
 }
 
-/// Which libraries of the driver are in the process.
+/// Prints which libraries of the driver are loaded.
 void libraries() {
   current(create(), 10);
   FILE* maps = fopen("/proc/self/maps", "r");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program of OSMesa: handles are plain numbers, and the test driver takes them.
+// An OSMesa program: handles are plain numbers, which the test driver accepts.
 #include <GL/gl.h>
 #include <GL/osmesa.h>
 #include <string.h>
@@ -24,7 +24,7 @@ void frames() {
   glFlush();
   glFinish();  // the same frame
   glClear(0);
-  current(context);  // another
+  current(context);  // ends another frame
   current(context, 3);
   release();
   glClear(0);

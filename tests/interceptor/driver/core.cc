@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A core for tests: it says what the entry library tells it, and which calls reach its table.
+// A core library for tests: prints the entry library's notifications, and the calls that reach its table.
 #include "interceptor/core.h"
 
 #include <cstdlib>
@@ -54,7 +54,7 @@ void flush() {
 
 void context_current(std::uintptr_t context, std::uintptr_t share, WindowSystem system, bool desktop_gl,
                      std::uintptr_t drawable) {
-  // Where a drawable is an address it is another in every run.
+  // A drawable that is an address differs in every run.
   const bool address = system == WindowSystem::osmesa;
   say(address ? "core: current %lu share %lu %s %s drawable\n"
               : "core: current %lu share %lu %s %s drawable %lu\n",

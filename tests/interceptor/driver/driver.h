@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A driver for tests: it draws nothing and says what it is asked to do, one line a call on standard output.
+// A driver for tests: draws nothing, and prints every call as one line on standard output.
 #pragma once
 
 #include <stdarg.h>
@@ -8,7 +8,8 @@
 
 #define DRIVER_FUNCTION extern "C" __attribute__((visibility("default")))
 
-/// One write a line, so that the lines of the driver, the core and the application come in their true order.
+/// One write per line, so that the lines of driver, core library and application appear in the order of the
+/// calls.
 __attribute__((format(printf, 1, 2))) inline void say(const char* format, ...) {
   char line[256];
   va_list arguments;
@@ -18,7 +19,7 @@ __attribute__((format(printf, 1, 2))) inline void say(const char* format, ...) {
   if (length > 0 && write(STDOUT_FILENO, line, static_cast<size_t>(length)) < 0) _exit(3);
 }
 
-/// Context handles 1, 2, 3…, the lowest free one first: handles come again, as addresses do.
+/// Context handles 1, 2, 3..., the lowest free one first: handles are reused, as addresses are.
 struct Handles {
   static constexpr int size = 16;
   bool taken[size] = {};
@@ -36,5 +37,5 @@ struct Handles {
   }
 };
 
-/// A drawable that no context can be made current with.
+/// A drawable with which no context can be made current.
 constexpr unsigned long bad_drawable = 13;

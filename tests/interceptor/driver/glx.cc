@@ -31,7 +31,7 @@ DRIVER_FUNCTION int glXMakeContextCurrent(void* display, unsigned long draw, uns
 }
 DRIVER_FUNCTION void glXSwapBuffers(void*, unsigned long drawable) {
   say("driver: swap %lu\n", drawable);
-  // Some drivers call exported OpenGL functions of their own: whatever stands under that name in this process.
+  // Some drivers call exported OpenGL functions themselves, and get whatever has that name in this process.
   if (auto flush = reinterpret_cast<void (*)()>(dlsym(RTLD_DEFAULT, "glFlush"))) flush();
 }
 DRIVER_FUNCTION void glXWaitGL() {
@@ -48,7 +48,7 @@ static void vendor_function() {
   say("driver: glVendorFunction\n");
 }
 
-/// A function of no registry: nobody but its caller and itself knows what it takes.
+/// A function that is in no registry: only its caller and the function itself know its parameters.
 static int draw_mesh(int a, int b, int c, int d, int e, int f, int g, int h, double p, double q, double r,
                      double s, double t, double u, double v, double w, double x) {
   say("driver: glDrawMeshNV %d %d %d %d %d %d %d %d, %g %g %g %g %g %g %g %g %g\n", a, b, c, d, e, f, g, h, p,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// libOpenGL.so.0 of the test driver. It has no glAccum: what a driver lacks can be tested.
+// libOpenGL.so.0 of the test driver. It lacks glAccum, to test missing functions.
 #include "driver.h"
 
 DRIVER_FUNCTION void glClear(unsigned) {

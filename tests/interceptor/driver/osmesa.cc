@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// libOSMesa.so.8 of the test driver: with an OpenGL of its own.
+// libOSMesa.so.8 of the test driver, with a separate OpenGL.
 #include <string.h>
 
 #include "driver.h"

@@ -42,7 +42,7 @@ TEST(CallId, ASlotIsTheMemberOfThatName) {
   EXPECT_EQ(cleared, 1);
   EXPECT_EQ(slot(table, CallId::Clear), reinterpret_cast<AnyFunction>(table.Clear));
 
-  // First and last, so that a registry and a header that disagree about the order are noticed.
+  // First and last slot, to detect a registry and a header with different orders.
   DispatchTable ends{};
   set_slot(ends, static_cast<CallId>(0),
            reinterpret_cast<AnyFunction>(static_cast<void (*)(GLbitfield)>(clear)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs in assembly language.
+// Analysis of assembly programs.
 #include <gmock/gmock.h>
 
 #include "spu/volume/program/slices.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every dialect that a driver may be given: all versions, several shaders of one stage, stages other than
-// fragments.
+// Every dialect that a driver may receive: all GLSL versions, several shaders per stage, and stages other than
+// fragment.
 #include <gmock/gmock.h>
 
 #include <thread>
@@ -118,7 +118,7 @@ TEST(Dialects, NameTheMembersOfInterfaceBlocks) {
                                                                  : Interpolation::smooth);
     EXPECT_EQ(input.integer, input.name == "Named.label");
   }
-  // Blocks that have locations, and arrays of blocks, are not taken apart.
+  // Blocks with locations, and arrays of blocks, are not split into members.
   EXPECT_THAT(members, UnorderedElementsAre("Named: Named.label 1x1", "Named: Named.place 2x1",
                                             "Named: Named.turned[0] 4x3", "Nameless: tint 4x1"));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of variables, as the analysis and as queries of OpenGL spell them.
+// Names of variables, as spelled by the analysis and by OpenGL queries.
 #include "spu/volume/program/element_names.h"
 
 #include <gtest/gtest.h>

@@ -13,7 +13,7 @@ std::string any(std::mt19937& chance, const std::array<const char*, n>& list) {
   return list[chance() % n];
 }
 
-/// Of every function, besides f and p, which are parameters of some.
+/// Locals of every function, in addition to f and p, which are parameters of some.
 constexpr const char* locals =
     "float g = 0.25; vec4 q = vec4(0.2); float s[3] = float[3](0.1, 0.2, 0.3);\n"
     "Pair r = Pair(vec2(0.3), 0.4); mat2 m = mat2(1.0);\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fragment shaders by chance: everything that values can be led through, in any order.
+// Random fragment shaders: every construct that values can pass through, in any order.
 #pragma once
 
 #include <random>
@@ -7,7 +7,7 @@
 
 namespace understudy::spu::program::testing {
 
-/// With the inputs of shader() in shader_facts.h. Every loop ends, every index is inside its array.
+/// Has the inputs of shader() in shader_facts.h. Every loop ends, and every index is inside its array.
 class RandomShader {
  public:
   explicit RandomShader(unsigned seed) : chance_(seed) {}
@@ -33,10 +33,10 @@ class RandomShader {
   std::string function(const std::string& name);
 
   std::mt19937 chance_;
-  int loops_ = 0;     ///< around what is being written
-  int counters_ = 0;  ///< so many were declared
+  int loops_ = 0;     ///< loops around the current statement
+  int counters_ = 0;  ///< number declared so far
   bool in_main_ = true;
-  int functions_ = 0;  ///< so many can be called
+  int functions_ = 0;  ///< number that can be called
 };
 
 }  // namespace understudy::spu::program::testing

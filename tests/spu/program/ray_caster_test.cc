@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What ray casters show besides their samples.
+// What determines the colours of ray casters in addition to their samples.
 #include "spu/volume/program/ray_caster.h"
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ struct Found {
   RayFinding finding;
 };
 
-/// A caster from a to b that does `in_loop` with sample v and position p, and `after` the loop.
+/// A ray caster from a to b that executes `in_loop` with sample v and position p, and `after` behind the loop.
 Found caster(const std::string& in_loop, const std::string& after = "", const std::string& before = "") {
   const std::vector<std::string> volumes{"volume"};
   Found found;
@@ -132,7 +132,7 @@ TEST(RayCasters, TellNeighboursThatAreCountedInTexels) {
   EXPECT_EQ(distance("v.rgb *= textureLod(volume, p + vec3(u.y), 0.0).r;"),
             NeighbourDistance::in_texture_space);
   EXPECT_EQ(distance("v.rgb *= textureLod(volume, p + vec3(u.y), v.a).r;"), std::nullopt);
-  // The gradient of one texture would reach differently far from that of another.
+  // The gradient's reach would depend on the texture.
   EXPECT_EQ(distance("v.rgb *= textureOffset(volume, p, ivec3(1, 0, 0)).r - texture(volume, p + vec3(u.y)).r;"),
             std::nullopt);
 }

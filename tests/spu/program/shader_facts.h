@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Facts as tests read them.
+// Facts in a form that tests can compare.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace understudy::spu::program::testing {
 
 using Texts = std::set<std::string>;
 
-/// Of one source; a failure fails the test.
+/// Facts of one source; a failed analysis fails the test.
 inline StageFacts facts_of(const std::string& source, Stage stage = Stage::fragment,
                            const std::vector<KnownUniform>& known = {}) {
   const std::vector<std::string> sources{source};
@@ -45,7 +45,7 @@ inline Texts texts_of(const StageFacts& facts, const Dependences& dependences) {
   return texts;
 }
 
-/// What a component of an output depends on.
+/// The sources that a component of an output depends on.
 inline Texts reaches(const StageFacts& facts, const std::string& name, int component = 0) {
   for (const Output& output : facts.outputs) {
     if (output.name == name && output.component == component)
@@ -54,8 +54,8 @@ inline Texts reaches(const StageFacts& facts, const std::string& name, int compo
   return {"no such output"};
 }
 
-/// `body` in main, writing `colour`, with inputs a (vec4) and b (vec4), uniforms u (vec4), k (int), list
-/// (float[4]), samplers volume (3-D) and table (1-D); what comes before main in `before`.
+/// A shader with `body` in main, which writes `colour`. Inputs a (vec4) and b (vec4), uniforms u (vec4), k
+/// (int), list (float[4]), samplers volume (3-D) and table (1-D); `before` precedes main.
 inline std::string shader(const std::string& body, const std::string& before = "") {
   return "#version 330\n"
          "in vec4 a, b; uniform vec4 u; uniform int k; uniform float list[4];\n"
@@ -64,7 +64,7 @@ inline std::string shader(const std::string& body, const std::string& before = "
          before + "\nvoid main() {\n" + body + "\n}\n";
 }
 
-/// What component `component` of `colour` depends on after `body`.
+/// The sources that component `component` of `colour` depends on after `body`.
 inline Texts colour_of(const std::string& body, int component = 0, const std::string& before = "") {
   return reaches(facts_of(shader(body, before)), "colour", component);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether slices show a function of the sample, and what is said where they do not.
+// Whether slices show a function of the sample, and what is reported if they do not.
 #include "spu/volume/program/slices.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A source that is not listed has no influence: tried with shaders made by chance, on a real driver.
+// A source that is not listed has no influence: checked with random shaders on a real driver.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@
 namespace understudy::spu::program::testing {
 namespace {
 
-/// A core context without a window, and one float pixel to draw.
+/// A core context without a window, with one float pixel to draw to.
 class OnePixel {
  public:
   OnePixel() {
@@ -45,7 +45,7 @@ class OnePixel {
 
   bool works() const { return works_; }
 
-  /// Null where the fragment is discarded.
+  /// Returns nullopt if the fragment is discarded.
   std::optional<std::array<float, 4>> draw() {
     const std::array<float, 4> untouched{-77, -77, -77, -77};
     glClearBufferfv(GL_COLOR, 0, untouched.data());
@@ -100,7 +100,7 @@ GLuint compiled(GLenum stage, const std::string& text) {
   return shader;
 }
 
-/// Varyings come from uniforms, too, so that each can be changed alone.
+/// Varyings are set from uniforms, so that each can be changed separately.
 class Program {
  public:
   explicit Program(const std::string& fragment) : name_(glCreateProgram()) {
@@ -133,7 +133,7 @@ class Program {
   GLuint name_;
 };
 
-/// Contents by chance, no two texels alike.
+/// Random contents, without two equal texels.
 void make_textures(std::mt19937& chance) {
   std::array<float, 4 * 4 * 4 * 4> texels{};
   for (float& texel : texels) texel = std::uniform_real_distribution<float>(0, 1)(chance);
@@ -151,7 +151,8 @@ void make_textures(std::mt19937& chance) {
   }
 }
 
-/// By output component, and for discards, the inputs that may have an influence, textures followed.
+/// For each output component, and for discards: the inputs that may have an influence, including through
+/// textures.
 struct Listed {
   std::array<std::array<bool, inputs>, 4> colour{};
   std::array<bool, inputs> discard{};
@@ -187,8 +188,8 @@ bool same(float a, float b) {
 }
 
 struct Tried {
-  int influences = 0;  ///< listed
-  int seen = 0;        ///< of those, that showed
+  int influences = 0;  ///< number listed
+  int seen = 0;        ///< number of these that had a visible effect
 };
 
 void try_inputs(OnePixel& pixel, const std::string& text, std::mt19937& chance, Tried& tried) {
@@ -243,7 +244,7 @@ TEST(Facts, ListEverySourceThatHasAnInfluence) {
   for (unsigned i = 0; i < shaders && !::testing::Test::HasFailure(); ++i) {
     SCOPED_TRACE("seed " + std::to_string(seed) + ", shader " + std::to_string(i));
     const std::string shader = RandomShader(seed + i).text();
-    // What is too large to follow is refused: nothing is claimed of it.
+    // Shaders too large to analyse are refused, so there is no claim to check.
     if (is_too_large(shader)) continue;
     try_inputs(pixel, shader, chance, tried);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shaders that are in use: those of the bundled viewer, read from its sources.
+// Shaders in actual use: those of the bundled viewer, extracted from its sources.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -22,7 +22,7 @@ std::string contents(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What stands between R"( and )" and has a main function.
+/// The raw strings, R"( to )", that contain a main function.
 std::vector<std::string> shaders_in(const fs::path& path) {
   static const std::regex literal(R"re(R"\(([^]*?)\)")re");
   const std::string text = contents(path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The client's side of OpenGL's state follows from the calls.
+// The client-side OpenGL state is derived from the calls.
 #include "spu/remote/client_state.h"
 
 #include <gtest/gtest.h>

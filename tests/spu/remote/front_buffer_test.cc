@@ -17,7 +17,7 @@ class FrontBufferTest : public ::testing::Test {
     front_.note(call, all.data());
   }
   void clear() { call(CallId::Clear, GL_COLOR_BUFFER_BIT); }
-  /// Whether it was drawn into since this was last asked.
+  /// Whether the front buffer was drawn to since the last query.
   bool is_drawn() {
     const bool drawn = front_.is_drawn();
     front_.shown();
@@ -30,7 +30,7 @@ class FrontBufferTest : public ::testing::Test {
 
   ShareGroup group_;
   FrontBuffer front_{true, group_};
-  bool left_ = false;  ///< by the last call
+  bool left_ = false;  ///< whether the last call leaves the front buffer
 };
 
 TEST_F(FrontBufferTest, IsDrawnIntoWhileItIsChosen) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What applications and GL servers say to each other: all of it arrives, and nothing that is cut or absurd is
-// believed.
+// Messages between applications and GL servers arrive complete, and truncated or absurd messages are refused.
 #include "spu/remote/gl_server_protocol.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +16,7 @@ namespace {
 
 using compositor::MalformedMessage;
 
-/// One message of calls, as it travels.
+/// Encodes one message of calls, as it is transmitted.
 std::vector<std::byte> calls_message(CallsHead head, std::span<const std::uint64_t> words) {
   std::vector<std::uint64_t> all(sizeof head / 8);
   std::memcpy(all.data(), &head, sizeof head);
@@ -64,7 +63,7 @@ TEST(GlServerProtocol, CallsHaveAsManyWordsAsTheySay) {
   refused({3, ServerReply(9), 5, 2}, chunks);
   for (std::size_t words = 0; words < chunks.size(); ++words)
     refused({3, ServerReply::answer, 5, 2}, std::span(chunks).first(words));
-  // Chunks that were never sent are nobody's.
+  // References to chunks that this receiver never got are refused.
   const auto again = chunks_of(sender, records, payload);
   EXPECT_LT(again.size(), chunks.size());
   refused({3, ServerReply::answer, 5, 2}, again);
@@ -89,7 +88,7 @@ TEST(Chunks, WhatIsTheSameDoesNotTravelAgain) {
   records[30001] = 5;
   EXPECT_LT(travels(), 700U);
   EXPECT_LT(travels(), 400U);
-  // More than the slots hold, many times over: both ends still agree.
+  // Many times more than the slots hold: both ends still agree.
   for (std::uint64_t seed = 2; seed < 60; ++seed) {
     records = some_records(50000, seed * 1'000'000);
     EXPECT_GT(travels(), 150000U);
@@ -148,7 +147,7 @@ TEST(CallAnswer, ComesBackWholeOrNotAtAll) {
   }
 }
 
-/// Red, green, blue and alpha of every pixel, rows from the bottom.
+/// RGBA of every pixel, bottom row first.
 std::vector<std::uint8_t> image_of(Extent2D extent, std::uint8_t value) {
   return std::vector<std::uint8_t>(std::size_t(extent.width) * std::size_t(extent.height) * 4, value);
 }
@@ -171,10 +170,10 @@ TEST(FrameChanges, AreTheSmallestRectangle) {
   EXPECT_EQ(change.width, 4);
   EXPECT_EQ(change.height, 3);
   ASSERT_EQ(change.pixels.size(), 48U);
-  // Blue first: the last pixel of the first row, and the first of the last one.
+  // Blue first: the last pixel of the first row, and the first of the last row.
   EXPECT_EQ(change.pixels[3 * 4], std::byte(100));
   EXPECT_EQ(change.pixels[8 * 4 + 2], std::byte(200));
-  // Of another window, and of another size, nothing is known.
+  // A different window or size has no previous image, so everything is sent.
   EXPECT_EQ(changes.next(2, extent, image).width, 8);
   EXPECT_EQ(changes.next(1, {4, 4}, image_of({4, 4}, 10)).height, 4);
 }

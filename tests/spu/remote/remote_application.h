@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An application of one window whose calls a GL server makes, in a process of its own.
+// An application with one window, whose calls are executed by a GL server in a separate process.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@
 
 namespace understudy::spu::staged {
 
-/// A window system of one window.
+/// A window system with one window.
 class OneWindow final : public FrontEnd {
  public:
   RecordedContext context() override {
@@ -34,14 +34,14 @@ class OneWindow final : public FrontEnd {
             .double_buffered = true};
   }
   FrontDrawable drawable() override { return {7, extent}; }
-  /// By the link's own thread; read behind a glFinish.
+  /// Called on the server connection's thread; read it after a glFinish.
   void show(const FrontDrawable&, Extent2D shown_extent, std::span<const std::uint8_t> pixels) override {
     ++shown;
     image.assign(pixels.begin(), pixels.end());
     image_extent = shown_extent;
   }
 
-  /// Blue, green and red, from the upper left.
+  /// Blue, green and red of a pixel, counted from the upper left.
   std::array<int, 3> at(int x, int y) const {
     const std::size_t first = (std::size_t(y) * std::size_t(image_extent.width) + std::size_t(x)) * 4;
     return {image[first], image[first + 1], image[first + 2]};
@@ -59,7 +59,7 @@ class OneWindow final : public FrontEnd {
 
 class RemoteApplication {
  public:
-  /// The GL server has this chain, and counts in `counters_folder`, if there is one.
+  /// Starts a GL server with this chain; it writes counters to `counters_folder` if that is not empty.
   explicit RemoteApplication(const std::string& chain, const std::filesystem::path& counters_folder = {}) {
     const std::filesystem::path socket = folder_.file("gl_server.sock");
     launcher::Environment environment = launcher::current_environment();
@@ -78,7 +78,7 @@ class RemoteApplication {
   RemoteApplication(const RemoteApplication&) = delete;
   RemoteApplication& operator=(const RemoteApplication&) = delete;
 
-  /// Another context is current from now on.
+  /// Makes another context and makes it current.
   Chain& make_context(bool core = false, std::uint64_t shares_with = 0) {
     window.core = core;
     if (core) window.version = link->versions().core;
@@ -95,7 +95,7 @@ class RemoteApplication {
     Chain::current()->frame_ended(FrameEnd::swap);
   }
 
-  /// Of the context that is current; null before there is one.
+  /// The table of the current context; null before there is one.
   static const DispatchTable* installed() { return table_; }
 
   OneWindow window;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What fuzzers begin with, and much that is nearly that.
+// Plays the seeds of the fuzzers, and many inputs close to them.
 #include "tests/fuzz/remote_input.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 using Buffer = std::vector<std::byte>;
 
-/// Some bytes are others, and the end may be missing.
+/// `input` with some bytes changed, and sometimes truncated.
 Buffer nearly(Buffer input, std::mt19937& random) {
   if (input.empty()) return input;
   for (unsigned count = random() % 6; count > 0; --count) input[random() % input.size()] = std::byte(random());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A chain whose calls a GL server makes, in a process of its own: what OpenGL answers there is what the
-// application sees here.
+// A chain whose calls are executed by a GL server in a separate process: the application must see what OpenGL
+// answers there.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -328,7 +328,7 @@ TEST_F(RemoteUnitTest, AGlServerThatEndsIsNoticed) {
   testing::internal::CaptureStderr();
   server_->signal(SIGTERM);
   server_->end(5000);
-  // Whatever was on its way: the second answer cannot come.
+  // Whatever was in transit, the second reply cannot arrive.
   for (int i = 0; i < 2; ++i) {
     gl().Clear(GL_COLOR_BUFFER_BIT);
     gl().Finish();

@@ -13,7 +13,7 @@ namespace understudy::spu::testing {
 
 class AnyCall {
  public:
-  /// Fills words with values that make sense together: small counts, known formats and types.
+  /// Fills words with values that fit together: small counts, known formats and types.
   AnyCall(CallId call, std::mt19937& random);
   const std::uint64_t* words() const { return words_.data(); }
 

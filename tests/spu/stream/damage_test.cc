@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams that nobody in his right mind would have written: an error that names the place, never a crash, a
-// hang or memory beyond what the file may claim. tests/fuzz looks for more of the kind.
+// Malformed streams cause an error that names the position, never a crash, a hang or more memory than the file
+// may request. tests/fuzz searches for more of them.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -35,7 +35,7 @@ Records every_command(const DispatchTable& questions) {
   return records;
 }
 
-/// Plays what can be played; answers how many records were refused.
+/// Plays all records that can be played; returns how many were refused.
 std::size_t play_untrusted(std::span<const std::uint64_t> words, std::span<const std::uint64_t> payload,
                            const DispatchTable& gl) {
   Decoder decoder(StreamOrigin::elsewhere, std::make_shared<ObjectNames>());
@@ -64,7 +64,7 @@ TEST_F(Damage, EveryRecordCutAtEveryWord) {
     const auto record = record_at(records.words(), at, records.payload());
     ASSERT_TRUE(record);
     for (std::size_t length = 1; length < record->words.size(); ++length) {
-      // The header says what there is, so that the arguments are what is missing.
+      // The header states the shortened length, so that only arguments are missing.
       std::vector<std::uint64_t> words(record->words.begin(), record->words.begin() + std::ptrdiff_t(length));
       words[0] = record->id | std::uint64_t(length) << 32;
       refused += play_untrusted(words, {}, driver.table());
@@ -80,7 +80,7 @@ TEST_F(Damage, EveryWordOfEveryRecordReplacedByExtremes) {
   const Records records = every_command(driver.table());
   constexpr std::array<std::uint64_t, 8> extremes = {
       0, ~std::uint64_t(0), std::uint64_t(1) << 63, 0x7fff'ffff, 0x8000'0000,
-      // References that lead just behind the record, to the payload's end, and far away.
+      // References to just behind the record, to the payload's end, and far away.
       Reference{ReferenceKind::inside, 0xffff'ffff}.word(), Reference{ReferenceKind::payload, 1}.word(),
       Reference{ReferenceKind::strings, 2}.word()};
   std::vector<std::uint64_t> words(records.words().begin(), records.words().end());
@@ -124,7 +124,7 @@ TEST_F(Damage, UnknownIdsAreNamed) {
 }
 
 TEST_F(Damage, PixelsThatAreNotThereAreRefused) {
-  // An image of 2^15 cubed texels with three bytes behind it.
+  // An image of 2^15 cubed texels with only three bytes of data.
   Records records;
   records.begin(stable_id(CallId::TexImage3D));
   for (const std::uint64_t word :
@@ -141,7 +141,7 @@ TEST_F(Damage, PixelsThatAreNotThereAreRefused) {
 
 TEST_F(Damage, AddressesOfElsewhereNeverReachOpenGl) {
   Records records;
-  // Not while a buffer is bound, so it is an address in somebody's memory.
+  // No buffer is bound, so the word is an address in some process's memory.
   records.append_plain(stable_id(CallId::VertexPointer),
                        {{3, GL_FLOAT, 0, Reference{ReferenceKind::address, 0xdead'beef}.word()}});
   const std::uint64_t draw[] = {GL_TRIANGLES, 3, GL_UNSIGNED_INT,
@@ -186,7 +186,7 @@ class DamagedFile : public Damage {
   }
   ~DamagedFile() override { fs::remove(path); }
 
-  /// Whole blocks that can be read; -1 for an error.
+  /// Number of complete blocks that can be read; -1 on error.
   static int blocks_of(std::span<const std::byte> file, std::string* error = nullptr) {
     int blocks = 0;
     try {
@@ -220,7 +220,7 @@ TEST_F(DamagedFile, EveryByteTurnedRoundIsNoticed) {
     file[at] ^= std::byte(0xff);
     std::string error;
     const int blocks = blocks_of(file, &error);
-    // Twelve bytes of the file's header and sixteen of each block's mean nothing yet.
+    // Twelve bytes of the file's header and sixteen of each block's header are unused so far.
     if (blocks == -1) {
       EXPECT_TRUE(at < 32 || error.find("at byte") != std::string::npos) << error;
     }

@@ -36,7 +36,7 @@ std::vector<std::uint64_t> copy(const Records& records) {
   return {records.words().begin(), records.words().end()};
 }
 
-/// What becomes of the records when their calls are made and recorded again.
+/// The records that result from making the calls and recording them again.
 std::vector<std::uint64_t> recorded_again(const std::vector<std::uint64_t>& words) {
   sink.clear();
   EXPECT_EQ(make_plain_calls(words, appending_table()), words.size());
@@ -168,7 +168,7 @@ TEST(PlainCalls, TheyStopWhereTheTableOrTheStreamHasNoMore) {
   EXPECT_EQ(make_plain_calls({}, DispatchTable{}), 0U);
 }
 
-// What runs rely on: room that was used before is used again, and nothing of what it held is seen.
+// Runs rely on this: memory is reused, and nothing of its former contents is visible.
 TEST(PlainCalls, RecordsThatWereClearedForgetWhatTheyHeld) {
   const GLubyte full[3] = {0xff, 0xff, 0xff};
   const auto record = [&](Records& to) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a stream from elsewhere says of pointers: OpenGL is handed bytes that came with it, memory of ours, or
-// an offset within a buffer object, and nothing else.
+// Pointers in an untrusted stream: OpenGL gets bytes that came with the stream, memory of this process, or an
+// offset within a buffer object, and nothing else.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::uint64_t evil = 0x4142'4344'4000;
 
-/// Notes whether a pointer argument is the one that the stream named.
+/// Notes whether a pointer argument equals the address that the stream contained.
 struct Watched {
   static inline thread_local bool evil_seen = false;
   static std::uint64_t call(CallId call, const std::uint64_t* words) {
@@ -49,7 +49,7 @@ class Pointers : public ::testing::TestWithParam<StreamOrigin> {
     return errors;
   }
   std::string play(const Records& records) { return play(records, driver.table()); }
-  /// A call with values alone, and references as they are given.
+  /// Makes a call with values only; references are passed unchanged.
   std::string make(CallId call, std::vector<std::uint64_t> words) {
     Records records;
     records.append_plain(stable_id(call), words);
@@ -152,7 +152,7 @@ TEST_P(Pointers, BytesOfTheStreamAreNoOffset) {
 
 TEST_P(Pointers, PixelsAreReadTightWhateverTheStreamTookForABegin) {
   make(CallId::PixelStorei, {GL_UNPACK_SKIP_ROWS, 1 << 20});
-  // A mode that OpenGL refuses: nothing has begun.
+  // OpenGL refuses this mode, so no primitive has begun.
   make(CallId::Begin, {0xffff});
   const std::array<std::byte, 64> pixels{};
   EXPECT_EQ(make_with(CallId::TexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA8, 4, 4, 0, GL_RGBA, GL_UNSIGNED_BYTE, 0},

@@ -20,7 +20,7 @@ namespace {
 
 thread_local ReadingDriver* reading_driver = nullptr;
 
-/// Buffers of streams that nobody wrote stay small.
+/// Keeps the buffers of random streams small.
 constexpr std::uint64_t most_buffer_bytes = std::uint64_t(1) << 20;
 constexpr std::size_t longest_parameter_bytes = 16 * sizeof(GLfloat);
 
@@ -32,7 +32,7 @@ std::uint64_t word_of(const void* pointer) {
   return reinterpret_cast<std::uintptr_t>(pointer);
 }
 
-/// Calls that OpenGL makes between glBegin and glEnd.
+/// Calls that are valid between glBegin and glEnd.
 bool is_of_vertices(CallId call) {
   constexpr std::array<std::string_view, 14> beginnings = {
       "glVertex", "glNormal",   "glColor",    "glTexCoord",  "glMulti",    "glFogCoord",     "glSecondaryColor",
@@ -181,7 +181,7 @@ ReadingDriver::Buffer* ReadingDriver::bound(GLenum target) {
   return binding == bindings_.end() || binding->second == 0 ? nullptr : &buffers_[binding->second];
 }
 
-/// A pointer argument as an address: an offset while a buffer is bound.
+/// Converts a pointer argument to an address: it is an offset while a buffer is bound.
 std::uint64_t ReadingDriver::in_buffer(GLenum target, std::uint64_t pointer) {
   const Buffer* buffer = bound(target);
   return buffer == nullptr ? pointer : word_of(buffer->bytes.data()) + pointer;
@@ -251,7 +251,7 @@ ReadingDriver::Buffer* ReadingDriver::buffer_of(CallId call, const std::uint64_t
 void ReadingDriver::set_data(Buffer& buffer, std::uint64_t bytes, std::uint64_t data) {
   if (bytes > most_buffer_bytes) return;
   buffer.mapped = false;
-  // New memory each time, so that what still points at the former is seen.
+  // New memory each time, so that uses of the former memory are detected.
   std::vector<std::byte>(bytes).swap(buffer.bytes);
   if (data != 0 && bytes > 0) std::memcpy(buffer.bytes.data(), address(data), bytes);
 }
@@ -356,7 +356,7 @@ std::optional<std::uint64_t> ReadingDriver::change(CallId call, const std::uint6
   change_arrays(call, words);
   switch (call) {
     case CallId::Begin:
-      // A mode that is none is an error.
+      // An invalid mode is an error.
       inside_ |= GLenum(words[0]) <= GL_POLYGON;
       return 0;
     case CallId::End:
@@ -415,7 +415,7 @@ void ReadingDriver::read_input(CallId call, std::size_t p, const std::uint64_t* 
       return;
     }
     case ExtentRule::counted_or_unpack: {
-      // Rows of compressed blocks are skipped, too.
+      // Skip values also apply to rows of compressed blocks.
       const PixelStore store = pixel_store(table_, unpack_names);
       const std::size_t skipped = std::size_t(store.skip_rows) * 16 + std::size_t(store.skip_pixels);
       const std::size_t bytes = pointee_bytes(call, p, words).value_or(0);
@@ -449,7 +449,7 @@ void ReadingDriver::write_output(CallId call, std::size_t p, const std::uint64_t
   if (words[p] == 0 && parameter.null_with == p) return;
   if (parameter.rule == ExtentRule::image_out) {
     const auto image = image_answer(call, words, table_);
-    // A caller with too little room gets nothing.
+    // If the caller's buffer is too small, nothing is written.
     if (!image || image->bytes == 0) return;
     const auto bytes =
         image->shape ? image_extent(*image->shape, pixel_store(table_, pack_names)) : image->bytes;
@@ -457,7 +457,7 @@ void ReadingDriver::write_output(CallId call, std::size_t p, const std::uint64_t
     return;
   }
   if (call == CallId::GetProgramStringARB) return write(words[p], program_text_);
-  // Names and values that are none of the driver's secrets.
+  // Writes names and values that reveal nothing about the driver.
   write(words[p], pointee_bytes(call, p, words).value_or(longest_parameter_bytes));
 }
 
@@ -469,7 +469,7 @@ void ReadingDriver::touch(CallId call, std::size_t p, const std::uint64_t* words
   }
 }
 
-/// As far as the call says; what is in buffer objects a driver looks after itself.
+/// Reads client memory within the range of the call; buffer objects are the driver's own responsibility.
 void ReadingDriver::draw(CallId call, const std::uint64_t* words) {
   const bool was_inside = std::exchange(inside_, false);
   const auto range = element_range(table_, call, words);

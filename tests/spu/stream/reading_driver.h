@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A driver for tests of streams that are not to be believed: it reads and writes every argument to its extent,
-// as a driver that checks nothing would. Under AddressSanitizer whatever lies outside is seen.
+// A driver for tests of untrusted streams. It reads and writes every argument to its full extent, as a driver
+// without checks would; AddressSanitizer reports accesses outside.
 //
-// It keeps what makes a pointer of an argument: the pixel store, buffer objects with their bytes and mappings,
-// vertex arrays, the buffers of feedback and selection. Between glBegin and glEnd it answers no question.
+// It keeps the state on which the meaning of pointer arguments depends: the pixel store, buffer objects with
+// their bytes and mappings, vertex arrays, feedback and selection buffers. Between glBegin and glEnd it does
+// not answer queries.
 #pragma once
 
 #include <array>
@@ -19,7 +20,7 @@
 
 namespace understudy::spu::testing {
 
-/// One at a time on a thread.
+/// At most one per thread at a time.
 class ReadingDriver {
  public:
   ReadingDriver();
@@ -29,7 +30,7 @@ class ReadingDriver {
 
   const DispatchTable& table() const { return table_; }
   std::uint64_t calls() const { return calls_; }
-  /// Everything that was read, so that no reading is left out by the compiler.
+  /// Depends on all bytes that were read, so that the compiler cannot remove any read.
   std::uint64_t sum() const { return sum_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every command of the registry through the stream and back: OpenGL sees the same.
+// Every command of the registry through the stream and back: OpenGL sees the same call.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -13,7 +13,7 @@
 namespace understudy::spu::testing {
 namespace {
 
-/// Plays everything in `records`; answers the first error.
+/// Plays all of `records`; returns the first error.
 std::string play(Decoder& decoder, const Records& records, const DispatchTable& gl) {
   for (std::size_t at = 0; at < records.words().size();) {
     const auto record = record_at(records.words(), at, records.payload());
@@ -27,7 +27,7 @@ std::string play(Decoder& decoder, const Records& records, const DispatchTable& 
 
 class RoundTrip : public ::testing::Test {
  protected:
-  /// What OpenGL sees of the call directly, and through the stream.
+  /// Compares what OpenGL sees of the call made directly and through the stream.
   void expect_same(CallId call, const std::uint64_t* words) {
     driver.forget();
     invoke(driver.table(), call, words);

@@ -21,7 +21,7 @@ void append(std::vector<std::byte>& to, const std::byte* from, std::size_t bytes
   to.insert(to.end(), from, from + bytes);
 }
 
-/// What OpenGL reads through one pointer.
+/// The bytes that OpenGL reads through one pointer.
 std::vector<std::byte> read(CallId call, std::size_t p, const std::uint64_t* words) {
   const CallShape& shape = call_shape(call);
   const ParameterShape& parameter = shape.parameters()[p];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A driver for tests of the stream: it keeps the few things a stream depends on -- the pixel store and the
-// bindings -- and notes every call with what its pointers point at.
+// A driver for tests of the stream: it keeps the state that a stream depends on, the pixel store and the
+// bindings, and records every call together with the data that its pointers point to.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@
 
 namespace understudy::spu::testing {
 
-/// A call as OpenGL would have seen it. Of pointers to input the bytes, pixels as tight_image() lays them; of
-/// offsets and outputs nothing.
+/// A call as OpenGL sees it. Holds the bytes that input pointers point to, with pixels in tight_image() layout;
+/// nothing for offsets and outputs.
 struct SeenCall {
   CallId call;
   std::vector<std::uint64_t> values;
@@ -25,7 +25,7 @@ struct SeenCall {
 
 std::string text(const SeenCall& call);
 
-/// One at a time on a thread.
+/// At most one per thread at a time.
 class StatefulDriver {
  public:
   StatefulDriver();
@@ -40,10 +40,10 @@ class StatefulDriver {
     return found == integers_.end() ? 0 : found->second;
   }
 
-  /// Without what asks and sets the pixel store.
+  /// Without the calls that query and set the pixel store.
   const std::vector<SeenCall>& calls() const { return calls_; }
   void forget() { calls_.clear(); }
-  /// Reads nothing behind pointers; for streams that are not to be believed in all they say.
+  /// Does not read behind pointers; for streams that are not entirely trusted.
   bool counts_only = false;
   std::uint64_t counted = 0;
 

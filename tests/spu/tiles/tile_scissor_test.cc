@@ -37,7 +37,7 @@ struct State {
   bool operator==(const State&) const = default;
 };
 
-/// A driver that knows its scissor test.
+/// Uses a mock driver with a scissor test.
 class TileScissorTest : public ::testing::Test {
  protected:
   void SetUp() override {

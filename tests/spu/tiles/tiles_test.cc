@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an application sees and shows where tile workers draw tiles of its window is what it sees and shows
-// where one process draws all of it, to the last bit.
+// With tile workers that draw tiles of its window, an application shows and reads exactly the same bytes as
+// with one process that draws the whole window.
 #include "spu/tiles/tiles.h"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,7 @@ using staged::RemoteApplication;
 constexpr int width = 96;
 constexpr int height = 80;
 
-/// What a run of an application shows and reads.
+/// What a run of an application shows and reads back.
 struct Seen {
   std::vector<std::vector<std::uint8_t>> images;
   std::vector<std::vector<std::uint8_t>> read;
@@ -40,7 +40,7 @@ struct Seen {
   bool operator==(const Seen&) const = default;
 };
 
-/// An application that notes what it sees.
+/// An application that records what it sees.
 class Application {
  public:
   Application(const std::string& chain, const std::filesystem::path& counters_folder,
@@ -58,7 +58,7 @@ class Application {
     seen.images.push_back(on_gl_server.window.image);
   }
   void read(int x, int y, int columns, int rows, GLenum format, GLenum type, std::size_t pixel_bytes) {
-    // What is not written stays as it is, on both.
+    // Bytes that are not written must keep their value in both runs.
     std::vector<std::uint8_t> pixels(std::size_t(columns + 8) * std::size_t(rows + 8) * pixel_bytes, 77);
     gl().ReadPixels(x, y, columns, rows, format, type, pixels.data());
     seen.read.push_back(std::move(pixels));
@@ -66,7 +66,7 @@ class Application {
   void read_all() { read(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, 4); }
   void note_error() { seen.errors.push_back(gl().GetError()); }
 
-  /// A fan of triangles of many colours, at depths that cross.
+  /// A fan of triangles of many colours, at crossing depths.
   void draw_fan(double turn) const {
     const DispatchTable& g = gl();
     g.Begin(GL_TRIANGLES);
@@ -83,7 +83,7 @@ class Application {
     gl().ClearColor(red, green, blue, 1);
     gl().Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   }
-  /// The texture that is bound, over the window from -1 to `right`.
+  /// Draws the bound texture over the window from -1 to `right`.
   void draw_textured(double right) const {
     const DispatchTable& g = gl();
     g.Enable(GL_TEXTURE_2D);
@@ -100,7 +100,7 @@ class Application {
     gl().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   }
-  /// A new one, that draws into a new texture of that name, 64 x 64; both stay bound.
+  /// Makes a framebuffer that draws into the texture, redefined as 64 x 64; both stay bound.
   GLuint bind_framebuffer_of(GLuint texture) const {
     const DispatchTable& g = gl();
     bind_texture(texture);
@@ -114,10 +114,10 @@ class Application {
 
   RemoteApplication on_gl_server;
   Seen seen;
-  std::vector<std::vector<float>> depths;  ///< that a copy may have made different by one of 2^24
+  std::vector<std::vector<float>> depths;  ///< a copy may change them by one step of 2^-24
 };
 
-/// Why the GL server under `run` gave tiles up, as its counters have it.
+/// Frames drawn in tiles, and why the GL server under `run` gave tiles up, from its counters.
 struct Counted {
   std::uint64_t frames = 0;
   std::string given_up;
@@ -125,7 +125,7 @@ struct Counted {
 
 class TilesTest : public ::testing::Test {
  protected:
-  /// Plays `scene` alone and with tile workers.
+  /// Plays `scene` without and with tile workers.
   Counted expect_same(const std::function<void(Application&)>& scene, int parts = 3) {
     Seen alone;
     std::vector<std::vector<float>> depths;
@@ -156,7 +156,7 @@ class TilesTest : public ::testing::Test {
     return counted();
   }
 
-  /// As many tiles as there are frames, with nothing given up.
+  /// Expects all frames to be drawn in tiles.
   void expect_all_in_tiles(const std::function<void(Application&)>& scene, int parts = 3) {
     const Counted figures = expect_same(scene, parts);
     EXPECT_GT(figures.frames, 0U);
@@ -170,7 +170,7 @@ class TilesTest : public ::testing::Test {
     return count;
   }
 
-  /// Of the GL server's process for the application.
+  /// Counters of the GL server's process for the application.
   Counted counted() const {
     for (const MappedCounters& counters : read_counters(folder_.file(""))) {
       if (counters->tiles.count == 0 && counters->tiles.given_up[0] == 0) continue;
@@ -266,7 +266,7 @@ TEST_F(TilesTest, WhatIsReadIsOfAllTiles) {
     gl.PixelStorei(GL_PACK_SKIP_ROWS, 2);
     gl.PixelStorei(GL_PACK_SKIP_PIXELS, 1);
     a.read(10, 20, 40, 40, GL_RGBA, GL_UNSIGNED_BYTE, 4 * 4);
-    // Nothing is written then.
+    // Nothing is written in this case.
     a.read(0, 0, 10, 10, GL_COLOR_INDEX, GL_UNSIGNED_BYTE, 4);
     a.note_error();
     a.swap();
@@ -495,7 +495,7 @@ TEST_F(TilesTest, AreGivenUpWhereFragmentsAreCounted) {
     EXPECT_GT(samples, 100U);
     a.seen.read.push_back({std::uint8_t(samples), std::uint8_t(samples >> 8)});
     a.swap();
-    // Drivers copy depth through floats, which costs its last bit here and there.
+    // Drivers copy depth through floats, which may change its last bit.
     std::vector<float> depth(width * height);
     gl.ReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
     a.depths.push_back(depth);
@@ -574,7 +574,7 @@ TEST_F(TilesTest, ATileWorkerThatIsGoneIsDoneWithout) {
   a.clear(0, 0, 1);
   a.draw_fan(0.3);
   a.swap();
-  // The GL server's children are the one that plays for the application, and its tile worker.
+  // The GL server's children are the process that plays for the application, and its tile worker.
   std::vector<pid_t> children;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
     std::ifstream status(entry.path() / "status");

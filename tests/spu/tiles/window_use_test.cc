@@ -33,7 +33,7 @@ TEST(WindowUse, IsKnownByName) {
   EXPECT_EQ(window_use(CallId::GetTexImage), WindowUse::asks);
   EXPECT_EQ(window_use(CallId::GetIntegerv), WindowUse::asks);
   EXPECT_EQ(window_use(CallId::ClearNamedFramebufferfv), WindowUse::none) << "it names another framebuffer";
-  // Later calls speak of what it answers.
+  // Later calls use the location that it returns.
   EXPECT_EQ(window_use(CallId::GetUniformLocation), WindowUse::none);
 }
 

@@ -15,7 +15,7 @@ using Inputs = VerificationSchedule::Inputs;
 constexpr std::size_t footprint = 1000;
 constexpr double native_ms = 100;
 
-/// Begins an image, and has it right where it is compared. Whether it was.
+/// Begins an image, and reports a due comparison as successful. Returns whether one was due.
 bool compared(VerificationSchedule& schedule, const Inputs& inputs, std::size_t pixels = footprint) {
   schedule.begin(inputs, pixels);
   const bool whole = schedule.whole_due();
@@ -145,7 +145,7 @@ TEST(VerificationSchedule, AChangeIsNotForgottenWhereItWasNotCompared) {
   compared(schedule, {{0}});
   schedule.begin({{1}}, footprint);
   ASSERT_TRUE(schedule.whole_due());
-  // Nothing was compared: the nodes were lost.
+  // Nothing was compared, because the nodes were lost.
   schedule.begin({{1}}, footprint);
   EXPECT_TRUE(schedule.whole_due());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The application draws where that is faster.
+// The application draws itself when that is faster.
 #include "spu/volume/timing/speed_guard.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ struct Viewer {
   std::uint64_t state = 1;
   int attempts = 0;
 
-  /// What an attempt costs; nothing to tell the guard: it was shown.
+  /// Counts the attempts within `time`; `attempt` tells the guard the outcome of each.
   template <class Attempt>
   int attempts_in(std::chrono::seconds time, Attempt attempt) {
     attempts = 0;
@@ -67,14 +67,14 @@ TEST(SpeedGuard, RefusalsTakeAFiftiethOfTheTime) {
   EXPECT_TRUE(viewer.guard.slower().empty());
 }
 
-/// As a comparison that is lost when the camera moves on: nothing says that the next image would be another.
+/// As when a comparison fails after the camera moved: there is no reason to expect more from the next image.
 TEST(SpeedGuard, ARefusalAfterAnImageEndsTheFirstLook) {
   Viewer viewer;
   viewer.guard.about_to_draw(viewer.state, viewer.now);
   viewer.guard.shown(150, 100, viewer.now);
   viewer.now += frame;
   EXPECT_EQ(viewer.refused(1s, 50), 1);
-  // Another program, or other contents, are looked at anew.
+  // A different program or different contents get new attempts.
   viewer.now += 5s;
   viewer.state = 2;
   EXPECT_EQ(viewer.refused(1s, 50), 3);
@@ -112,7 +112,7 @@ TEST(SpeedGuard, LooksAgainWhereTheProgramIsAnother) {
   viewer.state = 2;
   EXPECT_EQ(viewer.refused(1s, 50), 3);
   viewer.state = 3;
-  EXPECT_EQ(viewer.refused(1s, 50), 0);  // so soon
+  EXPECT_EQ(viewer.refused(1s, 50), 0);  // too soon
 }
 
 TEST(SpeedGuard, MakesAnAttemptThatIsLikelyToSucceed) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bound that every tile of an image must keep: right images pass, one wrong tile fails.
+// The bound that every tile of an image must keep: correct images pass, one wrong tile fails.
 #include "spu/volume/verification/tile_comparison.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr int edge = 128;
 
-/// Rings of colour on black, as a volume in the middle of a window shows them.
+/// Rings of colour on black, like a volume in the middle of a window.
 volume::Image rings(double phase = 0, double radius = 44) {
   volume::Image image({0, 0, edge, edge});
   for (int y = 0; y < edge; ++y) {

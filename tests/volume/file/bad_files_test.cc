@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are not what they say: an error that names the file and the next step, never a crash or a huge
-// allocation.
+// Files that are not what they claim to be cause an error that names the file and the next step, never a crash
+// or a huge allocation.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -148,7 +148,7 @@ TEST(BadFiles, VtiHeadersThatCannotBe) {
   EXPECT_THAT(trouble_with(folder.write("empty.vti", std::string())), HasSubstr("not a readable VTK image"));
 }
 
-// Bytes changed at random, mostly in headers: an answer, or an error that names the file.
+// Files with random byte changes, mostly in headers, are read or refused with an error that names the file.
 TEST(BadFiles, ChangedBytesNeverDoMoreHarmThanAnError) {
   const TemporaryFolder folder;
   const unsigned seed = 20771;
@@ -194,7 +194,7 @@ TEST(BadFiles, ChangedBytesNeverDoMoreHarmThanAnError) {
       const std::string trouble = trouble_with(folder.write(name, damaged(good, random)));
       ++(trouble.empty() ? survived : refused);
       if (!trouble.empty()) {
-        if (name == "m.mha")  // which may name another file for its data now
+        if (name == "m.mha")  // its header may now name another data file
           EXPECT_THAT(trouble, AnyOf(HasSubstr(folder.file(name) + ": "), HasSubstr(": cannot be read: ")));
         else
           EXPECT_THAT(trouble, HasSubstr(folder.file(name) + ": "));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// DICOM files as part 10 of the standard has them, written without a library: explicit VR, little endian.
+// Writes DICOM files (part 10 of the standard) without a library: explicit VR, little endian.
 #pragma once
 
 #include <array>
@@ -51,23 +51,23 @@ inline std::string text_of(const std::vector<double>& numbers) {
 
 }  // namespace dicom
 
-/// By group and number, in whose order they are written.
+/// Elements by group and number; they are written in this order.
 using DicomElements = std::map<std::pair<unsigned, unsigned>, std::string>;
 
-/// What a test wants to be otherwise.
+/// Settings of a DICOM file that a test may change.
 struct DicomFile {
   std::array<int, 2> size{13, 7};
   ScalarType type = ScalarType::i16;
-  int stored_bits = 0;  ///< 0: all of them
+  int stored_bits = 0;  ///< 0: all bits of the type
   std::string series = "1.2.826.0.1.3680043.2.1125.1";
-  std::string image;  ///< empty: made of series, instance and position
+  std::string image;  ///< empty: derived from series, instance and position
   int instance = 1;
   std::vector<double> position{0, 0, 0};
   std::vector<double> orientation{1, 0, 0, 0, 1, 0};
   std::vector<double> pixel_spacing{0.5, 0.25};  ///< between rows, between columns
   double slope = 1;
   double intercept = 0;
-  std::vector<std::vector<double>> frame_positions;  ///< of a file with several frames (Enhanced CT)
+  std::vector<std::vector<double>> frame_positions;  ///< for a file with several frames (Enhanced CT)
   unsigned samples = 1;
   std::string meaning = "MONOCHROME2";
   DicomElements more;
@@ -143,7 +143,7 @@ inline std::string dicom_bytes(const DicomFile& file) {
   return text;
 }
 
-/// The same image as gdcmconv encodes it with `option`, which is another library than the one that reads it.
+/// The same image, encoded by gdcmconv with `option`: by another library than the one that reads it.
 inline void recompress(const std::string& from, const std::string& to, const std::string& option) {
   const std::string command = "gdcmconv " + option + " '" + from + "' '" + to + "' 2>/dev/null";
   if (std::system(command.c_str()) != 0)

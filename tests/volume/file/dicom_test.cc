@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// DICOM series: slices are put where they lie in the patient, and mean what the scanner measured.
+// DICOM series: slices are placed by their position in the patient, and have the values that the scanner
+// measured.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,10 +30,10 @@ Bytes slice_of(const Bytes& scalars, int z) {
   return {first, first + std::ptrdiff_t(bytes)};
 }
 
-/// Slice z of `scalars`, 2.5 mm behind the one before it along `normal`.
+/// Slice z of `scalars`, 2.5 mm after the previous one along `normal`.
 DicomFile slice_file(const Bytes& scalars, int z, const Vec3& normal = {0, 0, 1}) {
   DicomFile file;
-  file.instance = series_size[2] - z;  // numbers may go the other way
+  file.instance = series_size[2] - z;  // instance numbers may decrease
   for (std::size_t k = 0; k < 3; ++k) file.position[k] = 100 + 2.5 * z * normal[k];
   file.pixels = slice_of(scalars, z);
   return file;
@@ -46,7 +47,7 @@ void write_series(const TemporaryFolder& folder, const Bytes& scalars, ScalarTyp
   }
 }
 
-/// Options of gdcmconv, and the transfer syntax that each makes.
+/// Options of gdcmconv, and the transfer syntax that each produces.
 constexpr std::array<std::pair<const char*, const char*>, 5> syntaxes{{{"--implicit", "1.2.840.10008.1.2"},
                                                                        {"--rle", "1.2.840.10008.1.2.5"},
                                                                        {"--jpeg", "1.2.840.10008.1.2.4.70"},
@@ -98,7 +99,7 @@ TEST(DicomSeries, EveryCompressionOfScannersAndArchives) {
   }
 }
 
-/// 12 bits with a sign, in 16: what lies above them is no part of the number.
+/// Signed 12-bit values in 16 bits: the bits above them are not part of the value.
 TEST(DicomSeries, BitsBeyondThoseStoredAreNotRead) {
   const TemporaryFolder folder;
   DicomFile file;
@@ -118,7 +119,7 @@ TEST(DicomSeries, ValuesAreThoseOfTheModality) {
     file.slope = 2;
     file.intercept = -1024;
     same.write(std::to_string(z), dicom_bytes(file));
-    file.slope = 1 + z;  // as PET has it
+    file.slope = 1 + z;  // as in PET
     different.write(std::to_string(z), dicom_bytes(file));
   }
   const auto hounsfield = open_volume(same.file(""));
@@ -146,7 +147,7 @@ TEST(DicomSeries, SeveralImagesOfAPlaceAreTimeSteps) {
   for (int z = 0; z < series_size[2]; ++z)
     for (int t = 0; t < 3; ++t) {
       DicomFile file = slice_file(steps[std::size_t(t)], z);
-      file.position[2] += 0.001 * ((z + t) % 2);  // as scanners round
+      file.position[2] += 0.001 * ((z + t) % 2);  // rounding of scanners
       file.instance = 100 * t + z;
       folder.write(std::to_string(7 * z + t), dicom_bytes(file));
     }
@@ -168,7 +169,7 @@ TEST(DicomSeries, TimeStepsComeByTemporalPositionBeforeTheirNumbers) {
   for (int z = 0; z < series_size[2]; ++z)
     for (int t = 0; t < 2; ++t) {
       DicomFile file = slice_file(steps[std::size_t(t)], z);
-      file.instance = z % 2 == t ? 1 : 2;  // numbered anew for each acquisition
+      file.instance = z % 2 == t ? 1 : 2;  // numbered separately in each acquisition
       file.more[{0x20, 0x100}] = dicom::element(0x20, 0x100, "IS", std::to_string(t + 1));
       folder.write(std::to_string(2 * z + t), dicom_bytes(file));
     }
@@ -200,7 +201,7 @@ TEST(DicomSeries, FramesOfADoseLieByTheirOffsets) {
   DicomFile file;
   file.type = ScalarType::u16;
   std::vector<double> offsets;
-  for (int z = series_size[2] - 1; z >= 0; --z) {  // from the head down
+  for (int z = series_size[2] - 1; z >= 0; --z) {  // from the head downwards
     file.pixels = joined(file.pixels, slice_of(scalars, z));
     offsets.push_back(3.0 * (z + 1 - series_size[2]));
   }
@@ -249,7 +250,7 @@ TEST(DicomSeries, FramesOfOneFileLieWhereTheyLie) {
   DicomFile file;
   file.slope = 3;
   file.intercept = -7;
-  file.orientation = {0, 1, 0, 0, 0, 1};  // slices follow each other along x
+  file.orientation = {0, 1, 0, 0, 0, 1};  // slices are stacked along x
   for (int i = 0; i < series_size[2]; ++i) {
     const int z = (i * 4) % series_size[2];
     file.frame_positions.push_back({2.5 * z, 4, 5});
@@ -269,7 +270,7 @@ TEST(DicomSeries, FramesOfOneFileLieWhereTheyLie) {
 TEST(DicomSeries, FramesOfOneFileInEveryCompression) {
   const Bytes scalars = random_scalars(series_size, ScalarType::i16, 8);
   DicomFile file;
-  file.stored_bits = 12;  // with a sign that reaches into the bits above
+  file.stored_bits = 12;  // with a sign that extends into the bits above
   Bytes expected;
   for (std::size_t i = 0; i < scalars.size(); i += 2) {
     std::int16_t value = 0;
@@ -368,7 +369,7 @@ TEST(DicomSeries, WhatIsNoVolumeSaysWhy) {
   EXPECT_THAT(trouble_with(folder.write("cut.dcm", cut)), HasSubstr("its pixels cannot be decoded"));
 }
 
-/// Bytes changed at random: an answer, or an error.
+/// Files with random byte changes are read or refused with an error.
 TEST(DicomSeries, ChangedBytesNeverDoMoreHarmThanAnError) {
   const TemporaryFolder folder;
   DicomFile file;
@@ -403,7 +404,7 @@ TEST(DicomSeries, EveryFileTwiceIsNoTimeSeries) {
   EXPECT_THAT(trouble_with(folder.file("")), HasSubstr("nothing says which of them comes first"));
 }
 
-/// Each level would take a part of the stack.
+/// Parsing each level would take a part of the stack.
 TEST(DicomSeries, DeepSequencesAreRefused) {
   const TemporaryFolder folder;
   DicomFile file;
@@ -449,7 +450,8 @@ TEST(DicomSeries, ElementsOfNoTypeAreRefused) {
   }
 }
 
-/// Cosines of three digits, as some scanners write them; and rows that are shifted by less than half a pixel.
+/// Direction cosines with three digits, as some scanners write them, and rows displaced by less than half a
+/// pixel.
 TEST(DicomSeries, DirectionsAndPositionsMayBeRounded) {
   const TemporaryFolder folder;
   const Bytes scalars = random_scalars(series_size, ScalarType::i16, 3);
@@ -484,7 +486,7 @@ TEST(DicomSeries, StepsThatMeanTheirValuesDifferentlyAreAllFloats) {
   }
 }
 
-/// What DCMTK would decode into memory of another size.
+/// DCMTK would decode these into memory of the wrong size.
 TEST(DicomSeries, JpegImagesOfAnotherSizeOrDepthAreRefused) {
   const TemporaryFolder folder, alone;
   DicomFile file;
@@ -522,7 +524,7 @@ TEST(DicomHeaders, FilesAreParsedAgainWhereTheyChanged) {
   ASSERT_EQ(second.size(), first.size());
   EXPECT_EQ(second[2]->frames.front().slope, 3);
   for (const std::size_t same : {0, 1, 3}) EXPECT_EQ(second[same], first[same]);
-  // What is not asked for is forgotten.
+  // Headers that a call does not request are dropped.
   known.of(std::span(files).first(1), {});
   const auto third = known.of(files, {});
   EXPECT_EQ(third[0], first[0]);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every format: what was written comes back, whole and in parts, and a part costs no more than it must.
+// Every format: what was written is read back, whole and in parts, and reading a part costs no more than
+// necessary.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,7 +30,8 @@ constexpr std::array<ScalarType, 10> all_types{
     ScalarType::u8,  ScalarType::i8,  ScalarType::u16, ScalarType::i16, ScalarType::u32,
     ScalarType::i32, ScalarType::u64, ScalarType::i64, ScalarType::f32, ScalarType::f64};
 
-/// The file holds these scalars; boxes of it are those of the whole, in any order and in the order of the file.
+/// Expects the file to hold these scalars: whole, in random boxes, and in slice ranges in the order of the
+/// file.
 void expect_holds(const std::string& name, const Bytes& scalars, ScalarType type, const FileHints& hints = {}) {
   SCOPED_TRACE(name);
   const auto file = open_volume(name, hints);
@@ -76,7 +78,7 @@ TEST(RawFile, SeveralGzipMembersAreOneFile) {
                ScalarType::u8);
 }
 
-// Counted: a plain file is asked for the box's bytes and no others.
+// Checks by byte counts that of a plain file only the box's bytes are read.
 TEST(RawFile, EachRankReadsItsShareAlone) {
   const TemporaryFolder folder;
   const std::array<int, 3> large{61, 47, 53};
@@ -159,7 +161,7 @@ TEST(NrrdFile, ForeignByteOrderSkipsAndDirections) {
                scalars, ScalarType::i16);
 }
 
-/// The scalars of three time steps, one behind the other.
+/// The scalars of three time steps.
 struct Steps {
   std::array<Bytes, 3> each{random_scalars(size, ScalarType::i16, 23),
                             random_scalars(size, ScalarType::i16, 29),
@@ -201,7 +203,7 @@ TEST(NrrdFile, TimeStepsOfALastAxis) {
   nrrdNix(nrrd);
 }
 
-/// The steps of each place together, then the next place.
+/// Scalars of all steps interleaved: the steps at one position, then the next position.
 Bytes interleaved(const Steps& steps) {
   Bytes all;
   for (std::size_t at = 0; at < steps.each[0].size(); at += 2)
@@ -243,7 +245,7 @@ TEST(NrrdFile, WhatIsTimeIsSaidByKindsAndDirections) {
   const FileDescription slices = described("dimension: 4\nsizes: 13 7 1 27\nkinds: domain domain domain time");
   EXPECT_EQ(slices.size, (std::array{13, 7, 1}));
   EXPECT_EQ(slices.time_steps, 27);
-  // Nothing says that a long axis is time while a short one does not count.
+  // Without `kinds`, a long fourth axis after an axis of size 1 is not taken for time.
   EXPECT_EQ(described("dimension: 4\nsizes: 13 7 1 27").size, (std::array{13, 7, 27}));
   EXPECT_EQ(described("dimension: 3\nsizes: 13 7 27\nkinds: domain domain time").time_steps, 1);
   EXPECT_EQ(described("dimension: 4\nsizes: 1 13 7 27\nkinds: list domain domain domain").time_steps, 1);
@@ -324,7 +326,7 @@ TEST(MetaImageFile, IsReadAsMetaIoReadsIt) {
   for (const char* local : {"LOCAL\n", "Local\n", "local\r\n"})
     expect_holds(folder.write("a.mha", joined(text_bytes(common + "ElementDataFile = " + local), scalars)),
                  scalars, ScalarType::i16);
-  // The header's size is counted from where the file begins.
+  // The header's size is counted from the beginning of the file.
   std::string padded = common + "HeaderSize = 200\nElementDataFile = LOCAL\n";
   padded.resize(200, '#');
   expect_holds(folder.write("b.mha", joined(text_bytes(padded), scalars)), scalars, ScalarType::i16);
@@ -433,7 +435,7 @@ TEST(NiftiFile, ForeignByteOrderAndTheSecondVersion) {
   put(first, 0, std::int32_t(348));
   put(first, 40, std::int16_t(4));
   for (int k = 0; k < 3; ++k) put(first, 42 + 2 * std::size_t(k), std::int16_t(size[std::size_t(k)]));
-  put(first, 48, std::int16_t(5));  // a series: the first one is read
+  put(first, 48, std::int16_t(5));  // a series: its first volume is read
   put(first, 70, std::int16_t(16));
   put(first, 108, 352.0F);
   std::memcpy(first.data() + 344, "n+1", 4);
@@ -479,7 +481,7 @@ Bytes numbers(const std::vector<std::uint64_t>& values, const VtiCase& c) {
   return bytes;
 }
 
-/// As VTK's writer lays it out.
+/// Laid out as by VTK's writer.
 Bytes vti(const Bytes& scalars, const std::string& type, std::size_t scalar, const VtiCase& c) {
   const Bytes stored = c.big_endian ? swapped(scalars, scalar) : scalars;
   Bytes front, data;
@@ -546,7 +548,7 @@ TEST(VtiFile, InlineAndAppendedRawAndBase64WithAndWithoutBlocks) {
       }
 }
 
-// A block that nothing is read of stays where it is.
+// A compressed block outside the requested box is not read.
 TEST(VtiFile, BlocksThatAreNotNeededAreNotRead) {
   const TemporaryFolder folder;
   const Bytes scalars = random_scalars(size, ScalarType::f64, 31);
@@ -573,7 +575,7 @@ TEST(SyntheticVolume, BoxesAreThoseOfTheWhole) {
     EXPECT_THROW(open_volume(bad), FileError) << bad;
 }
 
-/// Beside the project, where real data is kept on machines that have it.
+/// A file of the folder beside the project that keeps real data, on machines that have it.
 std::string real_data(const std::string& name) {
   namespace fs = std::filesystem;
   for (const char* folder : {"shared/data", "../shared/data"})

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hierarchical volumes: what was converted comes back, whole, in parts, and level by level, within the error
-// that was allowed and within the errors that the table states.
+// Hierarchical volumes: the converted data is read back whole, in parts and level by level, within the allowed
+// error and within the errors that the block table states.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <zlib.h>
@@ -115,7 +115,7 @@ TEST(HierarchicalVolume, GivesBoxesInAnyOrderAndReadsLittleForThem) {
   EXPECT_LT(fresh->bytes_read(), std::filesystem::file_size(path) / 4);
 }
 
-/// By trilinear interpolation of a level, clamped to its last sample.
+/// Trilinear interpolation of a level, clamped to its last sample.
 double interpolated(const std::vector<float>& level, const Size& size, int step, const Size& at) {
   double sum = 0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -170,7 +170,7 @@ TEST(HierarchicalVolume, LevelsAreWithinTheErrorsThatAreStated) {
   }
 }
 
-/// Between a block's last sample and the next block's first the next block's samples count, too.
+/// Between the last sample of a block and the first of the next, the next block's samples contribute as well.
 TEST(HierarchicalVolume, ErrorsOfBlocksHoldUpToTheBlocksBehind) {
   const Size size{260, 140, 70};
   std::vector<float> values(texels_in({{0, 0, 0}, size}));
@@ -180,7 +180,7 @@ TEST(HierarchicalVolume, ErrorsOfBlocksHoldUpToTheBlocksBehind) {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> uniform(0, 0.01F);
   for (float& value : values) value = uniform(random);
-  // In level 1 at (64, 1, 1), and what level 1 gives before it.
+  // A peak at sample (64, 1, 1) of level 1, and the slope that level 1 interpolates before it.
   for (int z = 0; z < 4; ++z)
     for (int y = 0; y < 4; ++y)
       for (int x = 126; x <= 128; ++x) {
@@ -250,7 +250,7 @@ TEST(HierarchicalVolume, KnowsTheRangeOfEveryBlock) {
   EXPECT_EQ(file->block(0).high, 200);
 }
 
-/// Whatever is changed is found out, or changes nothing.
+/// Every change is detected or has no effect.
 TEST(HierarchicalVolume, DamageIsFoundOut) {
   const Size size{80, 70, 66};
   const TemporaryFolder folder;
@@ -266,7 +266,7 @@ TEST(HierarchicalVolume, DamageIsFoundOut) {
     if (i % 4 == 0) {
       bad.resize(random() % good.size());
     } else {
-      // The header and the table are few bytes of many.
+      // Half of the changes hit the header and the block table, which are a small part of the file.
       const std::size_t most = i % 2 == 0 ? 600 : good.size();
       bad[random() % most] = char(bad[random() % most] ^ (1U << random() % 8));
     }
@@ -282,7 +282,7 @@ TEST(HierarchicalVolume, DamageIsFoundOut) {
   EXPECT_GT(refused, mutants * 9 / 10);
 }
 
-/// As who makes a file on purpose does.
+/// Makes the checksum valid again, as the author of a malicious file would.
 void renew_checksum(std::string& file, std::size_t from, std::size_t bytes) {
   const auto sum = std::uint32_t(crc32(0, reinterpret_cast<const Bytef*>(file.data() + from), uInt(bytes)));
   for (std::size_t i = 0; i < sizeof sum; ++i) file[from + bytes + i] = char(sum >> (8 * i) & 0xff);
@@ -305,14 +305,14 @@ TEST(HierarchicalVolume, WhatHasItsChecksumRenewedIsRefusedOrReadWithinItsMemory
     const bool header = i % 2 == 0;
     const std::size_t from = header ? 0 : hierarchical_header_bytes;
     const std::size_t bytes = (header ? hierarchical_header_bytes : table) - sum;
-    // One byte, or the eight of a number.
+    // One byte, or the eight bytes of a number.
     const std::size_t at = from + random() % bytes;
     const std::size_t count = i % 3 == 0 ? std::min<std::size_t>(8, from + bytes - at) : 1;
     for (std::size_t k = 0; k < count; ++k) bad[at + k] = char(random());
     renew_checksum(bad, from, bytes);
     try {
       const auto file = open_volume(folder.write("c_80x70x66.uvol", bad));
-      // A size that the header claims may be that of a volume that is not there.
+      // The header may claim the size of a much larger volume, so only a part is read.
       TexelBox part = whole(*file);
       for (int& n : part.high) n = std::min(n, 100);
       read_box(*file, part);

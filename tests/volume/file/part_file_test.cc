@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file that is written has its name only once it is whole, and nothing is left of one that never becomes so.
+// A written file gets its name only when it is complete; a file that is never completed leaves nothing behind.
 #include "volume/file/part_file.h"
 
 #include <fcntl.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which files a series is made of, and in which order.
+// Which files form a series, and in which order.
 #include "volume/file/series.h"
 
 #include <gtest/gtest.h>

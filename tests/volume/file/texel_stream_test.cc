@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From scalars to texels: exact where it can be, and where it cannot the error is told.
+// Conversion from scalars to texels is exact where possible; elsewhere the error is reported.
 #include "volume/file/texel_stream.h"
 
 #include <gmock/gmock.h>
@@ -77,7 +77,7 @@ TEST(TexelStream, ACompressedFileIsPassedOverInParts) {
     EXPECT_TRUE(stream.approach(500));
     EXPECT_TRUE(std::ranges::equal(texels, std::span(scalars).subspan(150 * 91)));
   }
-  // Of a file that ends too early, reading says so.
+  // Reading a truncated file reports the truncation.
   Bytes cut = gzipped(scalars);
   cut.resize(cut.size() / 2);
   TexelStream stream(open_volume(folder.write("c_13x7x200.raw.gz", cut)), {}, box);

@@ -142,7 +142,7 @@ TEST(TiffFile, StacksOfImageJHaveTimeStepsAndSpacing) {
               HasSubstr("it speaks of 9 images, but has 6"));
 }
 
-/// Beyond 4 GB ImageJ writes one directory, and all images behind each other.
+/// Beyond 4 GB, ImageJ writes one directory followed by the pixels of all images.
 TEST(TiffFile, ImagesOfImageJBehindTheOnlyPage) {
   const TemporaryFolder folder;
   const Bytes scalars = random_scalars(stack_size, ScalarType::u16, 2);

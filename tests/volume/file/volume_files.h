@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volumes to write into files, and what came back out of them.
+// Volumes to write to files, and checks of what is read back.
 #pragma once
 
 #include <zlib.h>
@@ -60,7 +60,7 @@ inline Bytes text_bytes(const std::string& text) {
   return {first, first + text.size()};
 }
 
-/// Random bits that are numbers in every type: exponents stay in the middle.
+/// Random scalars: all values of an integer type; floating-point values between -1000 and 1000.
 inline Bytes random_scalars(const std::array<int, 3>& size, ScalarType type, unsigned seed) {
   std::mt19937 random(seed);
   const std::size_t count = std::size_t(size[0]) * std::size_t(size[1]) * std::size_t(size[2]);
@@ -96,7 +96,7 @@ inline TexelBox whole(const VolumeFile& file) {
   return {{0, 0, 0}, file.description().size};
 }
 
-/// With some bytes changed, and cut at times.
+/// `bytes` with up to three random changes, and sometimes truncated.
 inline Bytes damaged(Bytes bytes, std::mt19937& random) {
   const int changes = 1 + int(random() % 3);
   for (int k = 0; k < changes; ++k) bytes[random() % bytes.size()] = std::byte(random() & 0xFFU);
@@ -104,7 +104,7 @@ inline Bytes damaged(Bytes bytes, std::mt19937& random) {
   return bytes;
 }
 
-/// What is wrong; empty when nothing is. Everything is read, slice by slice.
+/// Reads everything, slice by slice. Returns the error message, or "" if there is none.
 inline std::string trouble_with(const std::string& name, const FileHints& hints = {},
                                 const ReadableFiles& files = {}) {
   try {

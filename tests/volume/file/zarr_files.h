@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chunks as programs that write Zarr leave them.
+// Chunks in the form in which programs write Zarr.
 #pragma once
 
 #include <array>
@@ -28,25 +28,26 @@ Bytes packed(const Bytes& chunk, ChunkCodec codec, std::size_t scalar);
 void write_text(const std::filesystem::path& path, const std::string& text);
 void write_bytes(const std::filesystem::path& path, const Bytes& bytes);
 
-/// How often a volume is read, and how often refused, whose files have changed bytes.
+/// How often a volume with changed bytes was read, and how often it was refused.
 struct Survival {
   int read = 0, refused = 0;
 };
 
-/// `name` in `folder` is changed `times` times, and `volume` opened, which says where it is when it is refused.
+/// Damages `name` in `folder` `times` times and reads `volume` each time; a refusal must name the volume's
+/// path.
 void read_with_damage(const TemporaryFolder& folder, const std::string& name, const std::string& volume,
                       int times, std::mt19937& random, Survival& survival);
 
-/// What IEEE 754 defines; NaNs keep their sign and the bits of their payload.
+/// Half-precision value by the definition of IEEE 754; NaNs keep their sign and their payload bits.
 float half_by_definition(std::uint16_t bits);
 
-/// Bytes of 0 and 1 of bytes that a program wrote as booleans, and floats of numbers of half precision.
+/// Booleans as bytes of 0 and 1, and half-precision numbers as floats.
 Bytes read_as_booleans(const Bytes& elements);
 Bytes read_as_halves(const Bytes& elements);
 
 std::string replaced(std::string text, const std::string& from, const std::string& to);
 
-/// The chunk's scalars, those outside of the array 0, in the order that was chosen.
+/// The chunk's scalars in the chosen order; elements outside the array are 0.
 Bytes chunk_of(const Bytes& scalars, const std::array<int, 3>& low, const ZarrChoice& choice);
 
 }  // namespace understudy::volume::testing

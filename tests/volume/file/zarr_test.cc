@@ -44,7 +44,7 @@ std::string compressor_of(ChunkCodec codec) {
   return "";
 }
 
-/// `before`: the chunk's numbers along axes before z, each with the separator behind it.
+/// `before`: the chunk's indices along axes before z, each followed by the separator.
 void write_chunks(const std::filesystem::path& folder, const Bytes& scalars, const ZarrChoice& choice,
                   const std::string& before = "") {
   for (int z = 0; z * chunk_size[2] < array_size[2]; ++z)
@@ -190,7 +190,7 @@ TEST(ZarrArray, PackedValuesMeanWhatAttributesSay) {
   const auto file = open_volume(folder.file("a.zarr"));
   EXPECT_EQ(file->description().scale, 0.5);
   EXPECT_EQ(file->description().offset, -20);
-  // Python writes numbers that JSON does not have.
+  // Python writes NaN and infinities, which JSON does not have.
   write_text(folder.file("a.zarr/.zattrs"), R"({"scale_factor": NaN})");
   EXPECT_EQ(trouble_with(folder.file("a.zarr")), "");
 }
@@ -202,7 +202,7 @@ TEST(ZarrArray, MemoryIsThatOfALayerOfChunks) {
   write_chunks(folder.file("a.zarr"), random_scalars(array_size, choice.type, 2), choice);
   const auto file = open_volume(folder.file("a.zarr"));
   const std::size_t chunk = std::size_t(chunk_size[0] * chunk_size[1] * chunk_size[2]) * 2;
-  EXPECT_GE(file->memory_to_read(whole(*file)), 10 * chunk);  // 3 x 3, and one compressed
+  EXPECT_GE(file->memory_to_read(whole(*file)), 10 * chunk);  // 3 x 3 chunks, and a compressed one
   EXPECT_LE(file->memory_to_read(whole(*file)), 12 * chunk + 65536);
 }
 
@@ -239,7 +239,7 @@ TEST(ZarrArray, FoldersAreReadOnlyWhereClientsMay) {
   const ReadableFiles files(std::span(&parent, 1));
   EXPECT_EQ(read_box(*open_volume(parent + "/a.zarr", {}, files), {{0, 0, 0}, array_size}), scalars);
   EXPECT_THAT(trouble_with(other.file("a.zarr"), {}, files), HasSubstr("lies in none of the folders"));
-  // A chunk that is a link out of the folder is not read either.
+  // A link that leads out of the folder is not followed either.
   std::filesystem::remove_all(allowed.file("a.zarr/0"));
   std::filesystem::create_directory_symlink(other.file("a.zarr/0"), allowed.file("a.zarr/0"));
   EXPECT_THAT(trouble_with(parent + "/a.zarr", {}, files), HasSubstr("lies in none of the folders"));
@@ -296,7 +296,7 @@ TEST(OmeZarr, LevelsChannelsTimeStepsAndSpacing) {
   EXPECT_THAT(trouble_with(folder.file("a.zarr"), beyond), HasSubstr("it has no level 2; it has 2"));
 }
 
-/// `axes` with a comma behind them, or nothing.
+/// `axes`: followed by a comma, or empty.
 std::string image_text(const std::string& version, const std::string& axes) {
   return fmt::format(R"({{"multiscales": [{{"version": "{}", {} "datasets": [{{"path": "scale0/image"}}]}}]}})",
                      version, axes);
@@ -328,7 +328,7 @@ TEST(OmeZarr, AxesUnitsAndVersions) {
   EXPECT_THAT(with("0.4", R"("axes": ["z", "y"],)"), HasSubstr("its array has 3 axes, and 2 are told"));
   EXPECT_THAT(with("0.4", R"("axes": ["z", "y", "y"],)"), HasSubstr("one of its axes is told twice"));
   EXPECT_THAT(with("0.4", R"("axes": ["t", "z", "y"],)"), HasSubstr("it has no axis x"));
-  // A level alone does not know its axes, wherever the working folder is.
+  // Axes are not described at a single level, whatever the working directory is.
   EXPECT_THAT(trouble_with(folder.file("a.zarr/scale0/image")), HasSubstr("it is a level of the image"));
 }
 

@@ -39,7 +39,7 @@ void append_number(Bytes& bytes, std::uint64_t number) {
 }
 
 struct Version3 {
-  ZarrChoice chunk;  ///< its separator between the numbers of a file's name
+  ZarrChoice chunk;  ///< its separator stands between the indices of a file name
   bool checksum = false;
   bool names_of_version_2 = false;
 };
@@ -125,7 +125,7 @@ void write_array(const std::filesystem::path& folder, const Bytes& scalars, cons
 
 constexpr std::array<int, 3> chunks_of_shard{2, 3, 1};
 
-/// Chunk 1, 1, 1 is not there; neither is one that lies outside of the array.
+/// Chunk 1, 1, 1 is missing, as are chunks outside the array.
 Bytes shard_of(const Bytes& scalars, const std::array<int, 3>& shard, const Version3& choice,
                bool index_in_front) {
   Bytes chunks, index;
@@ -167,7 +167,7 @@ void write_shards(const std::filesystem::path& folder, const Bytes& scalars, con
   });
 }
 
-/// Without the chunk that shard_of() leaves out.
+/// With zeros for the chunk that shard_of() omits.
 Bytes without_missing_chunk(const Bytes& scalars, std::size_t bytes) {
   Bytes kept = scalars;
   for (int z = chunk_size[2]; z < 2 * chunk_size[2]; ++z)
@@ -363,7 +363,7 @@ TEST(ZarrVersion3, WhatIsNotReadSaysWhy) {
   EXPECT_THAT(trouble_with(folder.file("b")), HasSubstr("it is a group without an image"));
 }
 
-/// 2 x 3 x 4 scalars in one chunk, whose axes lie in another order.
+/// 2 x 3 x 4 scalars in one chunk whose axes are transposed.
 std::string small_array(const std::string& codecs) {
   return fmt::format(
       R"({{"zarr_format": 3, "node_type": "array", "shape": [2, 3, 4], "data_type": "uint8", "chunk_grid": )"
@@ -377,7 +377,7 @@ TEST(ZarrVersion3, TranspositionsThatAreNotTheirOwnInverse) {
   Bytes scalars(24), turned, turned_twice;
   for (int i = 0; i < 24; ++i) scalars[std::size_t(i)] = std::byte(i);
   const auto at = [&](int z, int y, int x) { return scalars[std::size_t(z * 3 + y) * 4 + std::size_t(x)]; };
-  // [1, 2, 0]: y, x, z, the slowest first; then [0, 2, 1]: y, z, x.
+  // [1, 2, 0]: y, x, z, slowest first; then [0, 2, 1]: y, z, x.
   for (int y = 0; y < 3; ++y)
     for (int x = 0; x < 4; ++x)
       for (int z = 0; z < 2; ++z) turned.push_back(at(z, y, x));

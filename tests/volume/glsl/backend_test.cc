@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who casts the rays: what is asked for, what is measured, and what happens where OpenGL cannot.
+// Selection of the backend: by request, by measurement, and the fallback where OpenGL cannot draw.
 #include "volume/glsl/backend.h"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@
 #include "volume/request.h"
 
 #if defined(__SANITIZE_ADDRESS__)
-/// What Mesa keeps until the process ends is not ours to free.
+/// Suppresses leak reports for memory that Mesa keeps until the process ends.
 extern "C" [[gnu::visibility("default")]] const char* __lsan_default_suppressions();
 const char* __lsan_default_suppressions() {
   return "leak:_dri.so\nleak:libEGL_mesa\nleak:libOSMesa\nleak:libLLVM\n";
@@ -48,7 +48,7 @@ class Told : public ::testing::Test {
         store_(filled(texture_)),
         request_(request_for(texture_, usual_camera(edge, edge), edge, edge, 60)) {}
 
-  /// The largest difference from the CPU's image in so many frames.
+  /// Draws `frames` frames; returns the largest difference from the CPU's image.
   double draw(BackendChooser& chooser, int frames) {
     Image expected(request_.window);
     FrameCounts counts;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volumes that textures cannot hold at once: by bricks that come and go, in passes, on EGL and on OSMesa. What
-// is drawn must be what one texture would show.
+// Volumes that do not fit into textures at once are drawn in passes by bricks that are loaded and evicted, on
+// EGL and on OSMesa. The image must equal that of a single texture.
 #include <gmock/gmock.h>
 
 #include <cstdio>
@@ -40,7 +40,7 @@ class GlslBricksOn : public ::testing::TestWithParam<Platform> {
 
   Device& device() { return *device_; }
 
-  /// From now on no more than so many bytes are left.
+  /// Leaves no more than `bytes` of texture memory free from now on.
   void leave(std::uint64_t bytes) {
     taken_.reset();
     taken_.emplace(device_->texture_memory(), device_->texture_memory().left() - bytes);
@@ -52,7 +52,7 @@ class GlslBricksOn : public ::testing::TestWithParam<Platform> {
     caster.render(request, image.image, image.counts);
     return image;
   }
-  /// From one texture.
+  /// Draws from a single texture.
   GlImage whole(const Texture& texture, const RenderRequest& request) {
     leave_all();
     const BrickStore store = filled(texture);
@@ -71,7 +71,7 @@ TEST_P(GlslBricksOn, ShowWhatOneTextureShowsUnderAnyBudget) {
   double worst = 0;
   std::uint64_t evictions = 0;
   for (Scene scene : scenes()) {
-    // Where bricks end, rays may end too.
+    // Rays may also terminate at brick boundaries.
     if (scene.request.termination > 0) scene.request.termination = 1e-6F;
     const GlImage one = whole(scene.texture, scene.request);
     const BrickStore store = filled(scene.texture);
@@ -116,7 +116,7 @@ TEST_P(GlslBricksOn, TakeEverySmallSize) {
       GlslRayCaster caster(store, device(), 8);
       const Difference d = difference(draw(caster, request).image, one.image);
       worst = std::max(worst, d.max);
-      by_bricks += caster.brick_figures().slots == 1 ? 1 : 0;  // the smallest fit as they are
+      by_bricks += caster.brick_figures().slots == 1 ? 1 : 0;  // the smallest volumes fit without bricks
       EXPECT_LE(d.max, 1e-5) << size << " texels along x, wrap " << int(wrap);
     }
   EXPECT_GT(by_bricks, 30);
@@ -143,7 +143,7 @@ TEST_P(GlslBricksOn, StayWhereAllThatIsSeenFits) {
 }
 
 TEST_P(GlslBricksOn, AreThoseThatTheTableShows) {
-  // Values rise along x: low ones are in the bricks at the left, high ones in those at the right.
+  // Values increase along x: low values lie in the bricks at the left, high values in those at the right.
   const Texture texture = sampled(describe({65, 33, 33}, TexelType::u8), linear_field({0.9, 0, 0}, 0.05));
   RenderRequest request = request_for(texture, usual_camera(width, height), width, height, 60);
   const auto showing = [](int first, int last) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small scenes that the ray caster in GLSL draws: every texel type, operator, wrapping and kind of step.
+// Small scenes for the GLSL ray caster: every texel type, operator, wrapping and kind of step.
 #pragma once
 
 #include <vector>
@@ -22,7 +22,7 @@ struct Scene {
   RenderRequest request;
 };
 
-/// Constant steps, about one a texel.
+/// Constant steps of about one texel.
 inline RaySteps steps_of(double length) {
   RaySteps steps;
   steps.metric = {1 / length, 0, 0, 0, 1 / length, 0, 0, 0, 1 / length};
@@ -43,7 +43,7 @@ inline DepthImage tilted_wall(const RenderRequest& request) {
   return depth;
 }
 
-/// Nothing but the highest values shows, and that fully.
+/// Only the highest values, above about 0.7, are visible.
 inline TransferFunction sparse_table() {
   TransferFunction f;
   for (int i = 0; i < 64; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ray caster in GLSL against the double-precision reference and against the CPU, on EGL and on OSMesa.
+// Compares the GLSL ray caster with the double-precision reference and with the CPU, on EGL and on OSMesa.
 #include "volume/glsl/glsl_ray_caster.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ TEST_P(GlslRayCasterOn, GivesTheImageOfTheReferenceAndOfTheCpu) {
     EXPECT_GT(gl.counts.samples_taken, 0U) << scene.name;
     EXPECT_EQ(gl.counts.blocks_empty, cpu.counts.blocks_empty) << scene.name;
 
-    // Samples elsewhere give another image: the comparison can fail.
+    // Other sample positions give another image, so the comparison can fail.
     RenderRequest other = scene.request;
     if (other.steps) other.steps->first += 0.5;
     other.planes.first += 0.5 * other.planes.spacing;

@@ -42,7 +42,7 @@ class HardCasesOnGl : public ::testing::Test {
     }
   }
 
-  /// Graphics cards filter with weights of eight bits.
+  /// Graphics cards filter with 8-bit weights.
   double widened(double bound) const {
     constexpr double of_eight_bits = 2e-2;
     const bool exact = device_->description().find("llvmpipe") != std::string::npos;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ten volumes, measured and computed, as every ray caster draws them, against double precision: samples on the
-// CPU and in OpenGL, and pre-integrated segments on the CPU.
+// Ten measured and computed volumes, drawn by every ray caster and compared with double precision: samples on
+// the CPU and in OpenGL, and pre-integrated segments on the CPU.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -28,12 +28,12 @@ using namespace volume::testing;
 namespace fs = std::filesystem;
 
 constexpr int image_edge = 64;
-/// Quadrature of every segment takes its time: so many pixels a side, in the middle of the image.
+/// Quadrature of every segment is slow, so it covers this many pixels per side in the middle of the image.
 constexpr int quadrature_edge = 20;
 
 struct Scene {
   const char* name;
-  const char* volume;  ///< in the folder of data, or synthetic
+  const char* volume;  ///< file in the data folder, or synthetic
   Vec3 spacing;
   double low, high;  ///< values between which colour and opacity change
   OrbitCamera camera;
@@ -72,7 +72,7 @@ LoadedVolume loaded(const std::string& name) {
   return volume;
 }
 
-/// Over all values of the volume; colour and opacity change between those of the scene.
+/// Defined over all values of the volume; colour and opacity change between the scene's `low` and `high`.
 TransferFunction table_of(const Scene& scene, const LoadedVolume& volume) {
   constexpr int entries = 33;
   const TexelFigures& values = volume.values;
@@ -115,7 +115,7 @@ TEST_P(TenScenes, AreWhatDoublePrecisionSays) {
       orbit_request(texture.description, scene.spacing, scene.camera, image_edge, image_edge, 1.3);
   request.classification = table_of(scene, volume);
 
-  // Segments look beyond a rank's own cells.
+  // Pre-integrated segments sample beyond a rank's own cells.
   RenderRequest segments = request;
   segments.method = Method::pre_integrated;
   segments.window = {(image_edge - quadrature_edge) / 2, (image_edge - quadrature_edge) / 2, quadrature_edge,
@@ -154,7 +154,7 @@ TEST_P(TenScenes, AreWhatDoublePrecisionSays) {
   }
   std::printf("%-20s %s\n", scene.name, line.c_str());
 
-  // Samples elsewhere give another image: the comparison can fail.
+  // Other sample positions give another image, so the comparison can fail.
   RenderRequest shifted = request;
   shifted.steps->first += 0.5;
   EXPECT_GT(difference(on_cpu(store, shifted), exact).rms, 2e-4);

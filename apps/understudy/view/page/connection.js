@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The conversation with the program: it proves that it knows the secret, and comes back when it was cut.
+// The connection to the program: proves knowledge of the secret, and reconnects after it is lost.
 
 const again_ms = 1000;
 
-// The secret comes behind '#', which no browser sends anywhere; a reload of this tab finds it again.
+// The secret follows '#', a part that browsers do not send; it survives a reload of this tab.
 function secretAtHand() {
   const found = /^#secret=([0-9a-f]+)$/.exec(location.hash);
   if (found) {

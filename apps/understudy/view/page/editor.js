@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The transfer function: control points over the volume's values, above the volume's histogram.
+// The editor of the transfer function: control points over the volume's values, above the volume's histogram.
 
 const radius = 6;
 
-// Opacities of one voxel are mostly small: their cube roots stand side by side.
+// Opacities of one voxel are mostly small, so the editor uses a cube-root scale.
 const heightOf = opacity => Math.cbrt(opacity);
 const opacityAt = height => height ** 3;
 
@@ -31,7 +31,7 @@ export class TransferEditor {
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
-  // Of the histogram what lies between the least and the greatest value, as parts of that range.
+  // Shows the part of the histogram between the minimum and the maximum, as fractions of that range.
   showHistogram(histogram, low, high) {
     const width = (histogram.high - histogram.low) / histogram.counts.length;
     this.bins = histogram.counts.map((count, i) => ({
@@ -70,7 +70,7 @@ export class TransferEditor {
     this.on.changed();
   }
 
-  // Control points at the rim keep clear of it.
+  // Leaves a border, so that control points at the edge are completely visible.
   get frame() {
     const {width, height} = this.canvas.getBoundingClientRect();
     return {left: radius + 2, top: radius + 2, width: width - 2 * radius - 4, height: height - 2 * radius - 4};
@@ -150,7 +150,7 @@ export class TransferEditor {
     for (const point of this.points) fill.addColorStop(Math.min(1, Math.max(0, point.at)), css(point.colour, 0.45));
     context.beginPath();
     context.moveTo(x(0), y(0));
-    // Straight lines of opacity are curves of its cube root.
+    // Linear opacity is a curve on the cube-root scale.
     const steps = Math.max(64, Math.round(frame.width));
     for (let i = 0; i <= steps; ++i) context.lineTo(x(i / steps), y(heightOf(this.at(i / steps).opacity)));
     context.lineTo(x(1), y(0));

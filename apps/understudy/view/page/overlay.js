@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The boxes of the ranks, drawn over the image with the camera that it was taken with.
+// Draws the boxes of the ranks over the image, with the camera of that image.
 
 export function colourOf(rank) {
-  return `hsl(${(28 + rank * 137.508) % 360} 75% 60%)`;  // by the golden angle: neighbours differ
+  return `hsl(${(28 + rank * 137.508) % 360} 75% 60%)`;  // golden angle: neighbours differ in colour
 }
 
 function projected(matrix, [x, y, z]) {
   return [0, 4, 8, 12].map(row => matrix[row] * x + matrix[row + 1] * y + matrix[row + 2] * z + matrix[row + 3]);
 }
 
-// What of a segment lies before the eye.
+// Returns the part of a segment that is in front of the eye.
 function visible(a, b) {
   const least = 1e-4;
   if (a[3] < least && b[3] < least) return null;
@@ -29,7 +29,7 @@ export function drawBoxes(canvas, matrix, ranks) {
   ranks.forEach((rank, number) => {
     const [low, high] = rank.box;
     if (high.some((value, k) => value <= low[k])) return;
-    // Drawn a little inside, so that the faces of two boxes are told apart.
+    // Drawn slightly inside, so that adjacent faces of two boxes can be distinguished.
     const inset = 0.003;
     const corners = Array.from({length: 8}, (_, i) => projected(matrix,
       [0, 1, 2].map(k => i >> k & 1 ? high[k] - inset : low[k] + inset)));

@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page: what the hand does becomes requests, one at a time; what comes back is shown.
+// The page: turns input into requests, one at a time, and shows the answers.
 import {Connection} from '/connection.js';
 import {TransferEditor, colourIn, hexOf} from '/editor.js';
 import {colourOf, drawBoxes} from '/overlay.js';
 
-const rest_ms = 150;       // after the last move the image at rest is asked for
-const rest_wait_ms = 500;  // between time steps, for an image at rest of each
-const most_side = 4096;    // of an image, as the program has it
-const wheel_step = 1.0015; // for one unit of a wheel's way
+const rest_ms = 150;       // time after the last move until the image at rest is requested
+const rest_wait_ms = 500;  // from this interval between time steps on, each gets an image at rest
+const most_side = 4096;    // largest side of an image, as in the program
+const wheel_step = 1.0015; // zoom factor for one unit of the wheel's delta
 
 const element = id => document.getElementById(id);
 const viewport = element('viewport'), image = element('image'), boxes = element('boxes');
 
-let volume = null;         // what there is to be seen
-let asked = {};            // since the last request
-let asked_at = null;       // when the hand moved first since then
-let on_its_way = null;     // {sequence, since}: one request at most
+let volume = null;         // the volume's description; null: none yet
+let asked = {};            // merged input since the last request
+let asked_at = null;       // time of the first input since then
+let on_its_way = null;     // {sequence, since} of the only request in flight
 let moving = false, rest_timer = 0;
 let took_ms = null;
 let sequence = 0;
 let shown = null, ranks = [];
 let plays = false, next_step_timer = 0;
-const rate = [];           // when the last images came
+const rate = [];           // arrival times of the images of the last second
 
 // ---- requests
 
-// Everything that makes a view, for a page that is loaded again or a connection that comes back.
+// The settings of the view, for a page that is reloaded or a connection that is re-established.
 function remembered() {
   return JSON.parse(sessionStorage.getItem('view') ?? 'null');
 }
@@ -41,13 +41,13 @@ function ask(part, moves) {
   asked = {...asked, ...part};
   moving = moves;
   clearTimeout(rest_timer);
-  // While a series plays, the next step comes instead of the same one at rest.
+  // While a series plays, the next time step follows instead of the same one at rest.
   if (moves && !(plays && wait_ms() < rest_wait_ms)) rest_timer = setTimeout(() => ask({}, false), rest_ms);
   send();
   tellWhetherBusy();
 }
 
-// For whoever watches the page without eyes.
+// For programs that observe the page.
 function tellWhetherBusy() {
   document.documentElement.dataset.busy = on_its_way || asked_at !== null || moving ? 'yes' : 'no';
 }
@@ -100,7 +100,7 @@ function answered(number) {
   tellWhetherBusy();
 }
 
-// ---- what the program says
+// ---- messages of the program
 
 function hear(message) {
   if (message.kind === 'status') {
@@ -205,7 +205,7 @@ function overlay() {
   drawBoxes(boxes, element('shows-boxes').checked ? shown?.matrix : null, ranks);
 }
 
-// ---- the hand on the image
+// ---- input on the image
 
 function sizeOf(of) {
   const {width, height} = of.getBoundingClientRect();
@@ -213,13 +213,13 @@ function sizeOf(of) {
     Math.min(most_side, Math.max(16, Math.round(side * window.devicePixelRatio))));
 }
 
-// In halves of the shorter side, right and up from the middle.
+// In halves of the shorter side, right and up from the centre.
 function pointAt(x, y) {
   const {left, top, width, height} = viewport.getBoundingClientRect(), half = Math.min(width, height) / 2;
   return [(x - left - width / 2) / half, (height / 2 - (y - top)) / half];
 }
 
-const held = new Map();  // pointers that are down: where they were last
+const held = new Map();  // last positions of the pressed pointers
 image.addEventListener('contextmenu', event => event.preventDefault());
 image.addEventListener('pointerdown', event => {
   image.setPointerCapture(event.pointerId);
@@ -302,13 +302,13 @@ function tellTime() {
   document.documentElement.dataset.timeStep = shown.time_step;
 }
 
-// Between two time steps, as the user wants it.
+// The interval between time steps that the user has chosen.
 function wait_ms() {
   const pace = Number(element('pace').value);
   return pace ? 1000 / pace : 0;
 }
 
-// After the last time step comes the first; no step is left out, however slow they are.
+// The first time step follows the last one; no step is skipped, however slow they are.
 function playOn() {
   clearTimeout(next_step_timer);
   if (!plays || !volume) return;
@@ -352,7 +352,7 @@ element('lossless').addEventListener('change', event => ask({lossless: event.tar
 element('home').addEventListener('click', () => { if (volume) ask({camera: volume.camera}, false); });
 element('shows-boxes').addEventListener('change', overlay);
 
-// ---- the conversation
+// ---- the connection
 
 element('ask').addEventListener('submit', event => {
   event.preventDefault();

@@ -9,14 +9,14 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-// Compiled once per instruction set; the best one is picked when the program runs.
+// Compiled once per instruction set; the best one is selected at run time.
 HWY_BEFORE_NAMESPACE();
 namespace understudy::compositor::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// One pixel at a time where a vector holds less than a pixel (HWY_SCALAR), else whole vectors and a tail of
-// single pixels: the same operations on every lane, so that a pixel's value never depends on where its run
+// Processes single pixels where a vector holds less than a pixel (HWY_SCALAR), otherwise whole vectors and a
+// tail of single pixels. Every lane computes the same, so a pixel's value never depends on where its run
 // begins.
 #if HWY_TARGET == HWY_SCALAR
 
@@ -60,8 +60,7 @@ void for_pixels(float* front, const float* back, std::size_t floats, Combine com
 
 void over(float* front, const float* back, std::size_t floats) {
   for_pixels(front, back, floats, [](auto d, auto f, auto b) {
-    // Rounding may have left alpha a little above one: nothing shines through, and nothing is subtracted
-    // either.
+    // Rounding may leave alpha slightly above one: the back is then hidden completely, and not subtracted.
     const auto clear = hn::Max(hn::Sub(hn::Set(d, 1.0F), hn::Broadcast<3>(f)), hn::Zero(d));
     return hn::MulAdd(clear, b, f);
   });
@@ -96,7 +95,7 @@ void blend(volume::Operator op, std::span<float> front, std::span<const float> b
   assert(front.size() == back.size() && front.size() % 4 == 0);
   switch (op) {
     case volume::Operator::over:
-    case volume::Operator::first_hit:  // images whose pixels are opaque or empty
+    case volume::Operator::first_hit:  // for images whose pixels are opaque or empty
       HWY_DYNAMIC_DISPATCH(over)(front.data(), back.data(), front.size());
       break;
     case volume::Operator::max:

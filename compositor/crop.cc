@@ -25,7 +25,7 @@ void crop_to_content(Image& image, volume::Operator op) {
   int y0 = rect.y, y1 = rect.y + rect.height;
   while (y0 < y1 && !row_touched(y0)) ++y0;
   while (y0 < y1 && !row_touched(y1 - 1)) --y1;
-  // Each row need only be searched outside the columns that are already known to count.
+  // Each row is searched only outside the columns that are already known to be kept.
   int x0 = rect.x + rect.width, x1 = rect.x;
   for (int y = y0; y < y1; ++y) {
     for (int x = rect.x; x < x0; ++x)
@@ -36,7 +36,7 @@ void crop_to_content(Image& image, volume::Operator op) {
 
   const Rect kept = y0 < y1 ? Rect{x0, y0, x1 - x0, y1 - y0} : Rect{};
   if (kept == rect) return;
-  // Rows move towards the front of the same memory, so none is overwritten before it has moved.
+  // Rows move towards the front of the same memory, so no row is overwritten before it has moved.
   const std::size_t row = 4 * std::size_t(kept.width);
   for (int y = 0; y < kept.height; ++y)
     std::memmove(image.rgba.data() + std::size_t(y) * row, image.at(kept.x, kept.y + y), row * sizeof(float));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Only what shows need travel: the smallest rectangle that holds every pixel a sample has reached.
+// Crops an image to the smallest rectangle that holds every pixel a sample has reached: only that is sent.
 #pragma once
 
 #include "volume/blending_operator.h"
@@ -7,8 +7,8 @@
 
 namespace understudy::compositor {
 
-/// Reduces `image` to that rectangle, in place; an image without any such pixel becomes empty. The image
-/// stays the same, because pixels outside an image count as untouched (volume::neutral_value).
+/// Crops `image` in place; without any such pixel it becomes empty. What the image shows is unchanged, because
+/// pixels outside an image count as untouched (volume::neutral_value).
 void crop_to_content(volume::Image& image, volume::Operator op);
 
 }  // namespace understudy::compositor

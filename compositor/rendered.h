@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a render service answers to a request.
+// What a render service returns for a request.
 #pragma once
 
 #include "volume/frame_counts.h"
@@ -10,7 +10,7 @@ namespace understudy::compositor {
 struct Rendered {
   volume::ImageView image;  ///< over its footprint only; valid until the service's next call but integrals()
   volume::FrameCounts counts;
-  bool repeated = false;  ///< nothing was cast: it is an image that was there already
+  bool repeated = false;  ///< no rays were cast: the image existed already
 };
 
 }  // namespace understudy::compositor

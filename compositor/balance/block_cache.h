@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks that a rank gave away, as they travel: when one comes back, it need not be sent. The least recently
-// given ones go when there are too many bytes.
+// Blocks that a rank gave away, packed as for sending: a block that comes back need not be sent. Above the byte
+// limit the blocks that were put first are dropped.
 #pragma once
 
 #include <array>
@@ -20,20 +20,20 @@ using BlockPlace = std::array<int, 3>;
 
 class BlockCache {
  public:
-  /// What an entry takes beside its texels, in a list, a map and an allocation: much, where blocks are of one
-  /// value.
+  /// Bytes of an entry beside its texels (list, map and allocation): most of the entry if all texels of the
+  /// block have one value.
   static constexpr std::size_t entry_bytes = 192;
 
   explicit BlockCache(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
   void put(const BlockPlace& place, std::vector<std::byte> packed);
   bool holds(const BlockPlace& place) const { return entries_.contains(place); }
-  /// Taken out of the cache.
+  /// Removes a block from the cache and returns it.
   std::optional<std::vector<std::byte>> take(const BlockPlace& place);
-  /// Their texels have changed.
+  /// Removes all blocks in this box, because their texels have changed.
   void drop(const volume::TexelBox& blocks);
   void clear();
-  /// With what entries take.
+  /// Includes entry_bytes for each entry.
   std::size_t bytes() const { return bytes_; }
 
  private:

@@ -5,7 +5,7 @@
 
 namespace understudy::compositor {
 
-/// Bricks are cut at the faces of blocks of so many cells along each edge.
+/// Bricks are cut at the faces of blocks with this many cells along each edge.
 inline constexpr int block_edge = volume::BrickStore::block_cells;
 
 }  // namespace understudy::compositor

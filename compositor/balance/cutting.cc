@@ -31,7 +31,7 @@ bool have_room(std::span<const TexelBox> boxes, std::span<const std::size_t> mos
   return true;
 }
 
-/// Of all ranks; null: they took no samples.
+/// Mean time per sample over all ranks; null if they took no samples.
 std::optional<double> ms_of_sample(std::span<const RankWork> work) {
   double ms = 0;
   double samples = 0;
@@ -49,7 +49,7 @@ class CuttingBalancer : public Balancer {
 
   Partition decide(const BalanceInput& input) override {
     if (cut_ && then_) return then_->decide(input);
-    // A first image may show nothing.
+    // The first images may show nothing.
     cut_ = CostSums(input.costs).within(input.lattice) > 0;
     return recut(input);
   }
@@ -63,7 +63,7 @@ class CuttingBalancer : public Balancer {
     const double stay = dearest(sums, now);
     const double gain = stay - dearest(sums, then);
     if (!have_room(then, input.most_blocks) || !(gain > settings_.least_gain * stay)) return input.partition;
-    // Before anything was measured the volume is taken to be shown more than once.
+    // Before anything is measured, the volume is assumed to be shown often enough for the cut to pay.
     const auto sample_ms = ms_of_sample(input.work);
     const double move_ms = double(most_blocks_moved(input.lattice, now, then)) * input.ms_per_block;
     return !sample_ms || settings_.horizon * gain * *sample_ms > move_ms ? fair : input.partition;

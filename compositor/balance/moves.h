@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What changes hands when the planes of a partition move.
+// The blocks that change ranks when the planes of a partition move.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace understudy::compositor {
 
-/// Blocks of 8^3 cells that one rank comes to hold and another has owned: a box of them, counted from the
+/// A box of blocks of 8^3 cells that rank `to` receives and rank `from` owned, counted in blocks from the
 /// lattice's low corner.
 struct BlockMove {
   int from = 0;
@@ -19,22 +19,22 @@ struct BlockMove {
   volume::TexelBox blocks;
 };
 
-/// The blocks that a rank with these cells keeps: those that meet them or the volume's ghost layer around them.
+/// Returns the blocks that a rank with these cells keeps: those that meet them or the ghost layer around.
 volume::TexelBox blocks_kept(const volume::VolumeDescription& volume, const volume::TexelBox& cells);
 
-/// The blocks whose lowest cell is one of these.
+/// Returns the blocks whose lowest cell is one of `cells`.
 volume::TexelBox blocks_owned(const volume::TexelBox& lattice, const volume::TexelBox& cells);
 
-/// Every block that a rank keeps after the move and not before, once, from the rank that owned it. In one order
-/// on all ranks.
+/// Lists every block that a rank keeps after the move but not before, once, with the rank that owned it. The
+/// order is the same on all ranks.
 std::vector<BlockMove> moves(const volume::VolumeDescription& volume, std::span<const volume::TexelBox> before,
                              std::span<const volume::TexelBox> after);
 
-/// The blocks that the busiest rank sends or receives. Ghost layers left out.
+/// Returns how many blocks the busiest rank sends or receives, ghost layers excluded.
 std::size_t most_blocks_moved(const volume::TexelBox& lattice, std::span<const volume::TexelBox> before,
                               std::span<const volume::TexelBox> after);
 
-/// `a` without `b`, as at most six boxes.
+/// Returns `a` without `b`, as at most six boxes.
 std::vector<volume::TexelBox> difference(const volume::TexelBox& a, const volume::TexelBox& b);
 
 }  // namespace understudy::compositor

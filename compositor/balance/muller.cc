@@ -26,11 +26,11 @@ class MullerBalancer : public Balancer {
     Partition partition = input.partition;
     if (input.work.empty()) return partition;
     factors_.resize(partition.splits.size(), {settings_.hysteresis, settings_.hysteresis});
-    std::vector<std::optional<std::size_t>> moved(partition.splits.size());  // and which way
+    std::vector<std::optional<std::size_t>> moved(partition.splits.size());  // null, or `towards`
     walk_splits(partition, input.lattice, [&](std::size_t i, const TexelBox& box) {
       Partition::Split& split = partition.splits[i];
       const auto axis = std::size_t(split.axis);
-      // Planes further up may have moved this box away from its plane.
+      // Planes further up may have moved, so that this plane lies outside its box.
       split.cut = allowed_cut(partition, i, box, input.lattice, block_edge, split.cut);
       const auto mean_ms = [&](int child) {
         const std::vector<int> ranks = ranks_under(partition, child);
@@ -40,7 +40,7 @@ class MullerBalancer : public Balancer {
       };
       const auto [low_ms, low_sum] = mean_ms(split.low);
       const auto [high_ms, high_sum] = mean_ms(split.high);
-      const std::size_t towards = low_ms > high_ms ? 0 : 1;  // which side gets smaller, and gives a slice
+      const std::size_t towards = low_ms > high_ms ? 0 : 1;  // the side that gives a slice; 0: low, 1: high
       TexelBox slice = box;
       slice.high[axis] = std::min(box.high[axis], box.low[axis] + block_edge);
       const auto blocks = double(blocks_in(slice));
@@ -65,7 +65,7 @@ class MullerBalancer : public Balancer {
 
  private:
   MullerSettings settings_;
-  std::vector<std::array<double, 2>> factors_;  // of each split: for its plane's way down, and up
+  std::vector<std::array<double, 2>> factors_;  // by split: for moving its plane down, and up
 };
 
 }  // namespace

@@ -19,12 +19,12 @@ using volume::TexelBox;
 
 namespace {
 
-/// How many ms a sample takes on one rank.
+/// Milliseconds per sample on one rank, smoothed over its measurements.
 class RelativeCost {
  public:
   bool known() const { return measured_ > 0; }
   double value() const { return value_; }
-  /// How far single measurements lie from what was expected of them, as a part of it.
+  /// Mean deviation of single measurements from the expected value, as a part of it.
   double scatter() const { return scatter_; }
 
   void measure(double ms_per_sample) {
@@ -37,7 +37,7 @@ class RelativeCost {
     std::array<double, 3> sorted = recent_;
     const auto end = sorted.begin() + std::ptrdiff_t(std::min(measured_, sorted.size()));
     std::sort(sorted.begin(), end);
-    // Of two the one nearer to what was: a single outlier moves nothing.
+    // Of two measurements, the one nearer to the old value: a single outlier changes nothing.
     double median = sorted[1];
     if (measured_ == 2 && std::abs(sorted[0] - value_) < std::abs(sorted[1] - value_)) median = sorted[0];
     const double off = std::abs(median - value_);
@@ -96,7 +96,7 @@ class PredictingBalancer : public Balancer {
   }
 
  private:
-  /// What the last image's measurements tell.
+  /// Updates relative costs and weights from the measurements of the last image.
   void learn(std::span<const RankWork> work, const BlockCosts& costs, const std::vector<TexelBox>& boxes) {
     double samples = 0, ms = 0;
     for (const RankWork& rank : work) {
@@ -104,7 +104,7 @@ class PredictingBalancer : public Balancer {
       ms += rank.ms;
     }
     if (samples <= 0) return;
-    // A rank that took next to no samples tells little of its speed: some samples of usual speed are added.
+    // Few samples say little about a rank's speed: some samples at the usual cost are added to them.
     constexpr double of_mean = 0.02;
     const double few = of_mean * samples / double(work.size());
     for (std::size_t rank = 0; rank < work.size(); ++rank) {
@@ -117,7 +117,7 @@ class PredictingBalancer : public Balancer {
     for (std::size_t rank = 0; rank < work.size(); ++rank) {
       const double expected = predicted_[rank];
       if (expected <= 0) continue;
-      // Half of the way, as a factor.
+      // Half of the correction, as a factor (its square root).
       const double right = std::clamp(double(work[rank].samples) / expected, 1.0 / 16, 16.0);
       const auto factor = float(std::sqrt(right));
       const TexelBox cubes = costs.cubes_of(boxes[rank]);
@@ -185,15 +185,15 @@ class PredictingBalancer : public Balancer {
     return partition;
   }
 
-  /// Planes a layer further, one by one, while that brings the times closer to each other: sides that are fair
-  /// to each other need not be divisible fairly.
+  /// Moves planes by one more layer, one plane at a time, while that evens out the ranks' times: two sides of a
+  /// split can have fair shares although neither can be divided fairly.
   static Partition refined(Partition partition, const BalanceInput& input, const CostSums& sums,
                            const std::vector<double>& slow) {
-    constexpr int most_ranks = 64, rounds = 3;  // it takes the square of the ranks
+    constexpr int most_ranks = 64, rounds = 3;  // the time grows with the square of the ranks
     if (partition.ranks > most_ranks) return partition;
     const int edge = input.costs.edge();
     const double mean = sums.within(input.lattice) / double(slow.size());
-    // A norm between the largest time and the sum of their squares: the second slowest counts, too.
+    // A sum of 8th powers lies between maximum and sum of squares: the second slowest counts, too.
     const auto unevenness = [&](const Partition& of) {
       double sum = 0;
       const std::vector<TexelBox> boxes = boxes_of(of, input.lattice);
@@ -245,9 +245,9 @@ class PredictingBalancer : public Balancer {
 
   PredictingSettings settings_;
   std::vector<RelativeCost> relative_cost_;
-  std::vector<float> weights_;     // of the cubes
-  std::vector<double> predicted_;  // samples of each rank in the image that was decided on last
-  double lost_ms_ = 0;             // by staying, since planes should have moved
+  std::vector<float> weights_;     // by cube
+  std::vector<double> predicted_;  // by rank: samples expected in the image of the last decision
+  double lost_ms_ = 0;             // by staying, since moving would have been faster
 };
 
 }  // namespace

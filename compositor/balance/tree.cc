@@ -39,7 +39,7 @@ int allowed_cut(const Partition& partition, std::size_t split, const TexelBox& b
   const auto axis = std::size_t(here.axis);
   const int low = box.low[axis], high = box.high[axis];
   const int origin = lattice.low[axis];
-  // Faces of layers inside the box; its own faces may lie between two layers.
+  // Faces of layers inside the box; the box's own faces may lie within a layer.
   const int first = (low - origin) / edge + layers_needed(partition, here.low)[axis];
   const int last = (high - origin + edge - 1) / edge - layers_needed(partition, here.high)[axis];
   if (first > last) return std::clamp(cut, low, high);
@@ -89,7 +89,7 @@ Partition with_room(const Partition& now, const Partition& next, const TexelBox&
     return cuts;
   };
   if (fits(next)) return next;
-  // All planes as large a part of their ways as there is room for.
+  // All planes go the largest common fraction of their way that leaves every rank enough room.
   constexpr int parts = 16;
   for (int part = parts - 1; part > 0; --part) {
     Partition candidate = now;
@@ -99,7 +99,7 @@ Partition with_room(const Partition& now, const Partition& next, const TexelBox&
     candidate = allowed(std::move(candidate));
     if (candidate != now && fits(candidate)) return candidate;
   }
-  // Steps of a layer have no parts: one plane after the other then goes, or stays.
+  // A step of one layer cannot be divided: each plane in turn then goes all the way, or stays.
   Partition result = now;
   for (std::size_t i = 0; i < now.splits.size(); ++i) {
     Partition candidate = result;

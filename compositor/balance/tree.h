@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the balancers ask of a partition's tree.
+// Queries on a partition's tree, for the balancers.
 #pragma once
 
 #include <array>
@@ -12,30 +12,30 @@
 
 namespace understudy::compositor {
 
-/// The ranks under a child of a split: another split, or ~rank.
+/// Returns the ranks under a child of a split. A child is another split, or ~rank.
 std::vector<int> ranks_under(const volume::Partition& partition, int child);
 
-/// How many layers of blocks the ranks under a child need at least across each axis, so that each has some.
+/// Returns how many layers of blocks the ranks under a child need across each axis, so that each has some.
 std::array<int, 3> layers_needed(const volume::Partition& partition, int child);
 
-/// The nearest place to `cut` at which both sides of split `split`, which cuts `box`, have the layers they
-/// need.
+/// Returns the place nearest to `cut` at which both sides of split `split`, which cuts `box`, have the layers
+/// that they need.
 int allowed_cut(const volume::Partition& partition, std::size_t split, const volume::TexelBox& box,
                 const volume::TexelBox& lattice, int edge, int cut);
 
-/// By rank.
+/// Returns the cells of each rank, by rank.
 std::vector<volume::TexelBox> boxes_of(const volume::Partition& partition, const volume::TexelBox& lattice);
 
-/// Blocks of 8^3 cells in a box, those in part too.
+/// Returns the number of blocks of 8^3 cells in a box, partial ones included.
 std::size_t blocks_in(const volume::TexelBox& box);
 
-/// `next`, or, where a rank would then hold more blocks than it may, planes on their way there from `now`: as
-/// far as all ranks have room. `most_blocks` by rank; empty: there is room.
+/// Returns `next` if no rank would then hold more than its `most_blocks`. Otherwise moves the planes from `now`
+/// towards `next` as far as all ranks have room. `most_blocks` is by rank; empty: no limit.
 volume::Partition with_room(const volume::Partition& now, const volume::Partition& next,
                             const volume::TexelBox& lattice, std::span<const std::size_t> most_blocks);
 
-/// Calls visit(split, box) for every split, with the box that it cuts; planes may be moved on the way, and
-/// boxes further down follow.
+/// Calls visit(split, box) for every split, with the box that it cuts. When `visit` moves planes, the boxes
+/// further down follow.
 template <class Visit>
 void walk_splits(volume::Partition& partition, const volume::TexelBox& lattice, const Visit& visit) {
   std::vector<volume::TexelBox> cut(partition.splits.size(), lattice);

@@ -9,7 +9,7 @@ namespace understudy::compositor {
 
 namespace {
 
-/// What one rank does in one round.
+/// One rank's work in one round.
 struct Work {
   std::uint64_t messages_out = 0, messages_in = 0, pixels_out = 0, pixels_in = 0, blended = 0, written = 0;
   int contributions = 0;
@@ -57,13 +57,13 @@ ExchangeCost cost(const Schedule& schedule, Layout layout, const MessageCost& me
           message_cost.per_pixel * double((mine.contributions > 1 ? mine.blended : 0) + mine.written);
       slowest = std::max(slowest, message_cost.latency * double(std::max(mine.messages_out, mine.messages_in)) +
                                       per_moved * double(std::max(mine.pixels_out, mine.pixels_in)) + drawn);
-      // What moves is half the sender's work and half the receiver's.
+      // Half of a message's cost is the sender's work, half is the receiver's.
       together += message_cost.latency / 2 * double(mine.messages_out + mine.messages_in) +
                   per_moved / 2 * double(mine.pixels_out + mine.pixels_in) + drawn;
     }
     result.seconds += std::max(slowest, together / message_cost.ranks_at_once);
   }
-  // Rank 0 then writes all of it.
+  // Rank 0 then writes the whole image.
   if (!written) result.seconds += message_cost.per_pixel * double(schedule.whole.pixels());
   if (!sent.empty()) result.most_pixels_sent = *std::ranges::max_element(sent);
   return result;

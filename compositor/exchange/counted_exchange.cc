@@ -15,17 +15,17 @@ using volume::Rect;
 
 struct Runs {
   std::size_t runs = 0;
-  std::size_t pixels = 0;  ///< that travel in them
+  std::size_t pixels = 0;  ///< that are sent in them
 };
 
 Runs runs_in(const PixelMask& mask, const Rect& rect, std::size_t least_hole) {
   Runs result;
   const auto width = std::size_t(rect.width);
-  std::size_t next = 0;  // behind the last run
+  std::size_t next = 0;  // first pixel behind the last run
   for (int y = rect.y; y < rect.y + rect.height; ++y) {
     const std::uint8_t* const row = mask.at(rect.x, y);
     const std::size_t before = std::size_t(y - rect.y) * width;
-    bool any = false;  // of this row has been in a run
+    bool any = false;  // whether a pixel of this row is in a run
     for (std::size_t x = 0; x < width; ++x) {
       if (row[x] == 0) continue;
       const std::size_t at = before + x;
@@ -39,7 +39,7 @@ Runs runs_in(const PixelMask& mask, const Rect& rect, std::size_t least_hole) {
   return result;
 }
 
-/// What of `from` lies in `rect` is touched in `mask`, too.
+/// Marks the pixels of `rect` that are touched in `from` as touched in `mask`, too.
 void unite(PixelMask& mask, const PixelMask& from, const Rect& rect) {
   for (int y = rect.y; y < rect.y + rect.height; ++y) {
     const std::uint8_t* const source = from.at(rect.x, y);

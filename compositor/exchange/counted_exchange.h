@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an exchange sends to the byte, message by message, told from which pixels each rank has to show: nothing
-// is cast, blended or sent. (cost.h counts the same from footprints alone, as if all of their pixels
-// travelled. Of packed pixels it counts what they are before they are packed.)
+// Counts the bytes that an exchange sends, message by message, from the pixels that each rank has to show.
+// Nothing is cast, blended or sent. (cost.h counts the same from footprints alone, as if all of their pixels
+// were sent. Packed pixels are counted at their size before packing.)
 #pragma once
 
 #include <cstdint>
@@ -32,24 +32,24 @@ struct PixelMask {
   }
 };
 
-/// Of an image as ray casters make it: where it is not volume::neutral_value.
+/// Returns the pixels of a ray-cast image that differ from volume::neutral_value.
 PixelMask mask_of(const volume::ImageView& image, volume::Operator op);
 
 struct CountedMessage {
   Rank from = 0;
   Rank to = 0;
   std::uint64_t bytes = 0;
-  std::uint64_t pixels = 0;  ///< that travel in it
+  std::uint64_t pixels = 0;  ///< that are sent in it
 };
 
-/// One rank's part in one round, or in all of them.
+/// One rank's traffic in one round, or in all of them.
 struct RankTraffic {
   std::uint64_t messages_sent = 0;
   std::uint64_t messages_received = 0;
   std::uint64_t bytes_sent = 0;
   std::uint64_t bytes_received = 0;
-  std::uint64_t pixels_blended = 0;  ///< of all its pieces, where these are more than one
-  std::uint64_t pixels_written = 0;  ///< into the image's memory
+  std::uint64_t pixels_blended = 0;  ///< of all its pieces, if it has more than one
+  std::uint64_t pixels_written = 0;  ///< into the image buffer
 
   RankTraffic& operator+=(const RankTraffic& other);
 };
@@ -66,9 +66,9 @@ struct CountedExchange {
   std::uint64_t bytes = 0;
 };
 
-/// `masks` are by rank, over the footprints that the schedule was made for. Exact for Layout::rgba32f; in the
-/// narrower ones as long as no touched pixel is so faint that all of its numbers round to those of an untouched
-/// one, which then does not travel on. Throws std::invalid_argument when there are not as many masks as ranks.
+/// `masks` are by rank, over the footprints that the schedule was made for. Exact for Layout::rgba32f. In
+/// narrower layouts exact unless a touched pixel is so faint that all of its numbers round to those of an
+/// untouched one, which is then not sent on. Throws std::invalid_argument if there is not one mask per rank.
 CountedExchange counted_exchange(const Schedule& schedule, std::span<const PixelMask> masks,
                                  volume::Operator op, Layout layout);
 

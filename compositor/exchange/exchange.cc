@@ -25,7 +25,7 @@ Image part_of(const Image& image, const Rect& rect) {
   return part;
 }
 
-/// The parts of `rect` outside `hole`: below, above, left and right of it.
+/// Adds the parts of `rect` outside `hole`: below, above, left and right of it.
 void add_around(const Rect& rect, const Rect& hole, std::vector<Rect>& parts) {
   const Rect common = intersection(rect, hole);
   if (common.empty()) return parts.push_back(rect);
@@ -37,7 +37,7 @@ void add_around(const Rect& rect, const Rect& hole, std::vector<Rect>& parts) {
     if (!part.empty()) parts.push_back(part);
 }
 
-/// One rank's way through a schedule.
+/// Executes a schedule on one rank.
 class Player {
  public:
   Player(Image mine, const Schedule& schedule, volume::Operator op, Layout layout, Communicator& communicator,
@@ -90,7 +90,7 @@ class Player {
     return mine;
   }
 
-  /// What is given, as messages. Pieces that are written into the image's memory leave a head alone.
+  /// Encodes the given pieces as messages. Of pieces written into the image buffer only a head is sent.
   std::vector<PixelMessage> encoded(const std::vector<const Piece*>& given) {
     std::vector<PixelMessage> messages;
     messages.reserve(given.size());
@@ -112,7 +112,7 @@ class Player {
     return messages;
   }
 
-  /// Sends what is given; returns what arrives.
+  /// Sends the given pieces; returns the messages that arrive.
   std::vector<PixelMessage> transferred(const Mine& mine) {
     std::vector<PixelMessage> messages = encoded(mine.given);
     std::vector<Outgoing> outgoing;
@@ -133,7 +133,7 @@ class Player {
     return arrived;
   }
 
-  /// Rank 0's last round, where ranks write into the image's memory.
+  /// Rank 0's last round, if ranks write into the image buffer.
   void write_round(const Round& round, const Mine& mine, std::vector<PixelMessage>& arrived) {
     if (mine.kept != nullptr) write_part(mine.kept->rect);
     for (std::size_t i = 0; i < arrived.size(); ++i)
@@ -158,10 +158,10 @@ class Player {
   struct Contribution {
     int position = 0;
     Rect rect;
-    std::optional<PixelReader> arrived;  ///< none: it is the part of this rank's own image
+    std::optional<PixelReader> arrived;  ///< null: the part of this rank's own image
   };
 
-  /// A row of pixels from (x, y) on, in the image's memory.
+  /// A row of pixels from (x, y) on, in the image buffer.
   std::span<float> in_memory(int x, int y, int pixels) const {
     const Rect& whole = schedule_.whole;
     const std::size_t first = std::size_t(y - whole.y) * std::size_t(whole.width) + std::size_t(x - whole.x);
@@ -183,7 +183,7 @@ class Player {
     arrived.end();
   }
 
-  /// What none of these covers has been reached by no sample.
+  /// Clears the pixels that none of these covers: no sample has reached them.
   void clear_between(std::span<const Rect> covered) {
     std::vector<Rect> bare{schedule_.whole};
     for (const Rect& hole : covered) {
@@ -211,7 +211,7 @@ class Player {
       if (contribution.arrived) contribution.arrived->end();
   }
 
-  // Everything else lies behind this rank's own image, within its rectangle.
+  // Blends everything else behind this rank's own image, within its rectangle.
   void blend_behind_own(std::span<Contribution> others) {
     for (int y = image_.rect.y; y < image_.rect.y + image_.rect.height; ++y)
       for (Contribution& other : others)
@@ -219,11 +219,11 @@ class Player {
           other.arrived->blend_row_behind(op_, {image_.at(other.rect.x, y), 4 * std::size_t(other.rect.width)});
   }
 
-  // Row by row, so that what is blended stays in the nearest cache and an image is written once.
+  // Blends row by row, so that a row stays in the nearest cache and an image is written once.
   void blend_anew(std::span<Contribution> contributions, const Rect& afterwards) {
     const std::size_t floats = 4 * std::size_t(afterwards.width);
     const float neutral = volume::neutral_value(op_);
-    // This rank's own part of a row has been blended when the row is written.
+    // This rank's own part of a row is already blended when the row is overwritten.
     const bool in_place = image_.rect == afterwards;
     Image result;
     result.rgba.reserve(in_place ? floats : 4 * afterwards.pixels());
@@ -239,7 +239,7 @@ class Player {
     image_ = std::move(result);
   }
 
-  // All contributions to a row that begins at x, behind nothing.
+  // Blends all contributions to a row that begins at x; the row is neutral before.
   void blend_row(std::span<Contribution> contributions, int y, int x, std::span<float> row) {
     bool first = true;
     for (Contribution& contribution : contributions) {
@@ -264,8 +264,8 @@ class Player {
   Layout layout_;
   Communicator& communicator_;
   std::span<float> memory_;
-  bool written_ = false;             // the image is in the memory
-  std::uint64_t bytes_to_tell_ = 0;  // that rank 0 has not heard of
+  bool written_ = false;             // the image buffer holds the image
+  std::uint64_t bytes_to_tell_ = 0;  // that rank 0 has not been told of
 };
 
 }  // namespace

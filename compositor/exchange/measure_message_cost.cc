@@ -15,14 +15,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// No line is faster than memory.
+/// No connection is faster than memory.
 constexpr double least_per_byte = 0.02e-9;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The shortest way there and back of `bytes` in so many rounds, halved.
+/// Returns half the shortest round trip of `bytes` in `rounds` rounds.
 double one_way(Communicator& communicator, Rank other, std::vector<std::byte>& bytes, int rounds) {
   double shortest = std::numeric_limits<double>::max();
   for (int round = 0; round < rounds; ++round) {
@@ -43,7 +43,7 @@ double one_way(Communicator& communicator, Rank other, std::vector<std::byte>& b
   return shortest;
 }
 
-/// The shortest way of `bytes` from every rank to the next, all at once.
+/// Returns the shortest time in which `bytes` go from every rank to the next, all at once.
 double all_ways(Communicator& communicator, std::vector<std::byte>& bytes, std::vector<std::byte>& room) {
   constexpr int rounds = 4;
   const Rank next = (communicator.rank() + 1) % communicator.size();
@@ -54,7 +54,7 @@ double all_ways(Communicator& communicator, std::vector<std::byte>& bytes, std::
     const Outgoing there{next, bytes};
     const Incoming here{previous, room};
     communicator.transfer({&there, 1}, {&here, 1});
-    // A rank is done when its neighbours are; the round, when all are.
+    // A rank is done when its neighbours are; the round is done when all ranks are.
     double slowest = seconds_since(start);
     std::vector<double> all(std::size_t(communicator.size()));
     communicator.gather_to_all(bytes_of(slowest), std::as_writable_bytes(std::span(all)));
@@ -84,7 +84,7 @@ MessageCost measure_message_cost(Communicator& communicator) {
     constexpr std::size_t large = std::size_t(1) << 20;
     const Rank last = communicator.size() - 1;
     std::vector<std::byte> small_message(1), large_message(large);
-    // Where ranks share a processor, most rounds of a small message wait for others to give it up.
+    // If ranks share a processor, most rounds of a small message wait for other ranks to yield it.
     const double latency = one_way(communicator, last, small_message, 64);
     const double transfer = one_way(communicator, last, large_message, 8);
     measured.latency = latency;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What messages, bytes and blending cost between these ranks, now.
+// Measures what messages, bytes and blending cost between these ranks at present.
 #pragma once
 
 #include "compositor/exchange/communicator.h"
@@ -7,8 +7,8 @@
 
 namespace understudy::compositor {
 
-/// Collective: measured between rank 0 and the last rank, and then between all ranks at once; the same on all
-/// ranks afterwards. Takes a few milliseconds, more where many ranks share a processor. A single rank has the
+/// Collective: measures between rank 0 and the last rank, then between all ranks at once; all ranks get the
+/// same result. Takes a few milliseconds, more if many ranks share a processor. A single rank gets the
 /// defaults.
 MessageCost measure_message_cost(Communicator& communicator);
 

@@ -42,7 +42,8 @@ void in_pieces(Span bytes, Call call) {
     call(bytes.subspan(from, std::min(max_bytes_per_message, bytes.size() - from)));
 }
 
-// Another container has other processes under the same numbers, whose files must not so much as be opened.
+// Checks the file before it opens it: in another container the same number is another process, whose files must
+// not be opened.
 FileDescriptor opened_if_same(const std::array<std::int64_t, 4>& where) {
   const auto [process, number, device, file] = where;
   if (number < 0) return {};
@@ -55,8 +56,8 @@ FileDescriptor opened_if_same(const std::array<std::int64_t, 4>& where) {
   return FileDescriptor(::open(fmt::format("/proc/self/fd/{}", found.get()).c_str(), O_RDWR | O_CLOEXEC));
 }
 
-// What every rank of this machine has made for the others, by rank; nothing, on all of them, when one has none
-// or cannot have another's.
+// Returns what every rank of this machine has made for the others, by rank; empty, on all of them, if one has
+// made nothing or cannot open another's.
 std::vector<FileDescriptor> shared_by_all(MPI_Comm machine, Rank mine, FileDescriptor made) {
   int ranks = 0;
   MPI_Comm_size(machine, &ranks);
@@ -78,7 +79,7 @@ std::vector<FileDescriptor> shared_by_all(MPI_Comm machine, Rank mine, FileDescr
   return opened;
 }
 
-// Of what the system may refuse.
+// Returns null if the system refuses.
 template <class Make>
 auto made_or_nothing(Make make) -> decltype(make()) {
   try {
@@ -88,7 +89,7 @@ auto made_or_nothing(Make make) -> decltype(make()) {
   }
 }
 
-// What this rank has made, if all have made theirs.
+// Returns what this rank has made, if all ranks have made theirs; otherwise null.
 template <class Made>
 Made if_all_have(MPI_Comm machine, Made made) {
   int all_have = made ? 1 : 0;
@@ -97,24 +98,24 @@ Made if_all_have(MPI_Comm machine, Made made) {
 }
 
 // OpenMPI polls while it waits. A rank that waits for long must leave the processor to the viewer and to the
-// ranks that still work: first it only yields, then it sleeps until somebody notifies, and where nobody does,
-// for a sixteenth of the time it has waited so far (so the wait grows by a sixteenth at most), a millisecond at
-// most.
+// ranks that still work: first it only yields, then it sleeps until it is notified. If nobody notifies, it
+// sleeps for a sixteenth of the time waited so far (so the wait grows by a sixteenth at most), at most a
+// millisecond.
 struct Wait {
   std::chrono::microseconds only_yield = patience;
-  bool all_notify = false;  ///< whoever is waited for notifies when there is something to be seen
+  bool all_notify = false;  ///< those that are waited for notify this rank when they are done
 };
 
 template <class Done>
 void wait_until(WakeUp* wake_ups, Done done, const Wait& wait) {
   constexpr auto longest_nap = std::chrono::microseconds(1000);
-  // Should a wake-up ever be missed, the wait at most doubles.
+  // Should a notification ever be missed, the wait at most doubles.
   constexpr auto shortest_sleep = std::chrono::microseconds(1000);
   constexpr auto longest_sleep = std::chrono::microseconds(100'000);
   const auto start = Clock::now();
   for (;;) {
     const std::uint32_t notified = wake_ups ? wake_ups->notified() : 0;
-    // OpenMPI looks whether anything is done, and only then at what has come: the second look sees that.
+    // OpenMPI checks for completion first, and then for arrivals: the second call sees what they complete.
     if (done() || done()) return;
     const auto waited = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - start);
     const auto nap = std::min<std::chrono::microseconds>(waited / 16, longest_nap);
@@ -151,13 +152,13 @@ struct MpiCommunicator::SentControl {
 };
 
 MpiCommunicator::MpiCommunicator(int& argc, char**& argv) {
-  // Memory of an image's size is needed again for the next one. Handed back to the system, as glibc does by
-  // itself, every page of it would be fetched and cleared anew, which takes longer than blending what it holds.
+  // Memory of an image's size is needed again for the next image. By default glibc returns it to the system;
+  // every page would then be mapped and cleared anew, which takes longer than blending its content.
   mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that glibc allows
   mallopt(M_TRIM_THRESHOLD, 256 << 20);
   int provided = 0;
-  // Other threads of a rank ray-cast; one at a time talks, the main one but for images that are composited
-  // while they are drawn.
+  // Other threads of a rank cast rays. One thread at a time calls MPI: the main one, except for images that are
+  // composited while they are drawn.
   MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
@@ -169,7 +170,7 @@ void MpiCommunicator::meet_machine() {
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
   MPI_Comm_size(machine, &local_size_);
   if (size_ > 1 && local_size_ == size_) {
-    // Ranks have the same order there as in the job.
+    // Ranks have the same order on the machine as in the job.
     const std::vector<FileDescriptor> wake_ups =
         shared_by_all(machine, rank_, made_or_nothing([&] { return WakeUp::make_memory(size_); }));
     if (!wake_ups.empty())
@@ -181,7 +182,7 @@ void MpiCommunicator::meet_machine() {
       segments_ = if_all_have(
           machine, made_or_nothing([&] { return std::make_unique<SharedSegments>(segments, rank_); }));
   }
-  // Whether descriptors can be opened is tried, wherever ranks share a machine.
+  // Tests whether ranks that share a machine can open each other's descriptors.
   int local_rank = 0;
   MPI_Comm_rank(machine, &local_rank);
   const bool can_open =
@@ -203,7 +204,7 @@ std::span<std::byte> MpiCommunicator::shared_segment(std::size_t bytes) {
 
 void MpiCommunicator::transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) {
   if (!segments_) return move(outgoing, incoming);
-  // Who may leave a message where it is says where that is, or that the message comes after all.
+  // A sender that may leave a message in place tells where it is, or that it sends the message after all.
   constexpr SharedSegments::Place nowhere{~std::uint64_t(0), 0};
   std::vector<MPI_Request> requests;
   std::vector<SharedSegments::Place> heard(incoming.size()), told(outgoing.size());
@@ -240,7 +241,7 @@ void MpiCommunicator::transfer(std::span<const Outgoing> outgoing, std::span<con
 
 void MpiCommunicator::move(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) {
   std::vector<MPI_Request> requests;
-  std::vector<std::size_t> first;  // request of each incoming message
+  std::vector<std::size_t> first;  // index of each incoming message's first request
   for (const Incoming& message : incoming) {
     first.push_back(requests.size());
     in_pieces(message.bytes, [&](std::span<std::byte> piece) {
@@ -255,8 +256,8 @@ void MpiCommunicator::move(std::span<const Outgoing> outgoing, std::span<const I
     });
   for (const Outgoing& message : outgoing) notify(message.to);
   std::vector<MPI_Status> statuses(requests.size());
-  // Long messages move in pieces that both sides must ask for: who sleeps in between holds the other up. So
-  // ranks stay awake for as long as a slow machine takes to copy that much.
+  // Long messages move in pieces that both sides must request: a rank that sleeps in between delays the other.
+  // So ranks stay awake for as long as a slow machine takes to copy that much.
   std::size_t bytes = 0;
   for (const Outgoing& message : outgoing) bytes += message.bytes.size();
   for (const Incoming& message : incoming) bytes += message.bytes.size();
@@ -273,8 +274,8 @@ void MpiCommunicator::move(std::span<const Outgoing> outgoing, std::span<const I
   }
 }
 
-// Where ranks wake each other, a message from one to each of the others is sooner there than what MPI hands on
-// from rank to rank, of which each must wake first.
+// If ranks wake each other, one message from a rank to each of the others arrives sooner than MPI's broadcast,
+// which passes from rank to rank, each of which must wake first.
 void MpiCommunicator::tell_others(Rank from, std::span<std::byte> bytes) {
   const Wait wait{patience, bytes.size() <= most_control_bytes};
   in_pieces(bytes, [&](std::span<std::byte> piece) {
@@ -294,7 +295,7 @@ void MpiCommunicator::tell_others(Rank from, std::span<std::byte> bytes) {
                   &requests.emplace_back());
     notify_all();
     complete(wake_up_.get(), requests, {});
-    notify_all();  // a message may have waited for room until now
+    notify_all();  // a message may have waited for space until now
   });
 }
 
@@ -330,7 +331,7 @@ void MpiCommunicator::gather_to_all(std::span<const std::byte> mine, std::span<s
     notify(0);
   }
   tell_others(0, all);
-  // All ranks have come here, so none looks at what was sent before.
+  // All ranks have come here, so none reads earlier messages any more.
   if (segments_) segments_->clear();
 }
 
@@ -348,7 +349,7 @@ void MpiCommunicator::send_control(Rank to, std::span<const std::byte> control) 
   sent.bytes.assign(control.begin(), control.end());
   MPI_Isend(sent.bytes.data(), int(sent.bytes.size()), MPI_BYTE, to, control_tag, MPI_COMM_WORLD,
             &sent.request);
-  notify(to);  // NOLINT(clang-analyzer-optin.mpi.MPI-Checker): forget_sent() sees to its end
+  notify(to);  // NOLINT(clang-analyzer-optin.mpi.MPI-Checker): forget_sent() completes it
 }
 
 std::optional<ControlMessage> MpiCommunicator::take_control_message() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ranks of an MPI job. The source of this header is the one file that says MPI.
+// The ranks of an MPI job. Only the source of this header uses MPI.
 #pragma once
 
 #include <list>
@@ -13,8 +13,8 @@ namespace understudy::compositor {
 
 class MpiCommunicator : public Communicator {
  public:
-  /// Starts MPI; one object per process, made on its main thread and used by one thread at a time.
-  /// Where all ranks are on one machine, they wake each other and read messages in place.
+  /// Starts MPI. One object per process, made on its main thread and used by one thread at a time. If all ranks
+  /// are on one machine, they wake each other and read messages in place.
   MpiCommunicator(int& argc, char**& argv);
   ~MpiCommunicator() override;
   MpiCommunicator(const MpiCommunicator&) = delete;
@@ -22,7 +22,7 @@ class MpiCommunicator : public Communicator {
 
   Rank rank() const override { return rank_; }
   int size() const override { return size_; }
-  /// Ranks of this job that share this machine's processors.
+  /// How many ranks of this job share this machine's processors.
   int ranks_on_this_machine() const { return local_size_; }
 
   std::vector<int> machines() const override { return machines_; }
@@ -43,14 +43,14 @@ class MpiCommunicator : public Communicator {
   void tell_others(Rank from, std::span<std::byte> bytes);
   void forget_sent();
 
-  std::unique_ptr<WakeUp> wake_up_;           // where all ranks are on one machine
-  std::unique_ptr<SharedSegments> segments_;  // the same
+  std::unique_ptr<WakeUp> wake_up_;           // if all ranks are on one machine
+  std::unique_ptr<SharedSegments> segments_;  // likewise
 
-  std::list<SentControl> sent_controls_;  // not yet known to have left
+  std::list<SentControl> sent_controls_;  // not yet known to be sent
   Rank rank_ = 0;
   int size_ = 1;
   int local_size_ = 1;
-  std::vector<int> machines_;  ///< by rank, its machine's lowest one
+  std::vector<int> machines_;  ///< by rank: the lowest rank of its machine
 };
 
 }  // namespace understudy::compositor

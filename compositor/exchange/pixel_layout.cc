@@ -22,7 +22,7 @@ namespace understudy::compositor::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Bit i: a component of pixel i, of at most 64, differs from `neutral`.
+/// Bit i of the result: a component of pixel i, of at most 64, differs from `neutral`.
 std::uint64_t touched_one_by_one(const float* pixels, std::size_t count, float neutral) {
   const hn::CappedTag<float, 4> d;
   const auto untouched = hn::Set(d, neutral);
@@ -36,11 +36,11 @@ std::uint64_t touched_one_by_one(const float* pixels, std::size_t count, float n
   return bits;
 }
 
-/// Bit x % 64 of word x / 64 of `bits` for pixel x of a row.
+/// Sets bit x % 64 of word x / 64 of `bits` if pixel x of a row is touched.
 void find_touched(const float* row, std::size_t pixels, float neutral, std::uint64_t* bits) {
   const hn::ScalableTag<float> d;
   const auto untouched = hn::Set(d, neutral);
-  // So many at once that are all the same are told in few steps.
+  // If this many pixels are all touched or all untouched, they take few steps.
   constexpr std::size_t at_once = 16;
   for (std::size_t x = 0; x < pixels; x += 64) {
     std::uint64_t word = 0;
@@ -80,8 +80,8 @@ using volume::Image;
 using volume::Operator;
 using volume::Rect;
 
-/// Before the pixels, in head_bytes: what is told, how many runs stand behind the pixels (or that all of them
-/// travel), and whether they are packed.
+/// Precedes the pixels, in head_bytes: the count of tell(), how many runs follow the pixels (or that all pixels
+/// are sent), and whether these are packed.
 struct Head {
   std::uint64_t told = 0;
   std::uint32_t runs = 0;
@@ -90,7 +90,7 @@ struct Head {
 static_assert(sizeof(Head) == head_bytes);
 constexpr std::uint32_t all_pixels = 0xffffffff;
 
-/// So many pixels untouched, then so many that travel; runs go on from row to row.
+/// Number of untouched pixels, then of pixels that are sent; runs continue from row to row.
 struct PixelRun {
   std::uint32_t untouched = 0;
   std::uint32_t touched = 0;
@@ -105,12 +105,12 @@ struct Span {
   std::size_t end = 0;
 };
 
-/// The touched spans of a row, from what find_touched() has found.
+/// The touched spans of a row, from the result of find_touched().
 class TouchedSpans {
  public:
   explicit TouchedSpans(std::size_t width) : width_(width), bits_((width + 63) / 64) {}
 
-  /// Holes of less than `least_hole` pixels do not part spans.
+  /// Holes of less than `least_hole` pixels do not separate spans.
   const std::vector<Span>& find(const float* row, float neutral, std::size_t least_hole) {
     HWY_DYNAMIC_DISPATCH(find_touched)(row, width_, neutral, bits_.data());
     spans_.clear();
@@ -126,7 +126,7 @@ class TouchedSpans {
   }
 
  private:
-  /// The first pixel from x on that is touched, or is not; the width if there is none.
+  /// Returns the first pixel from x on that is touched (or is not, as `touched` says); otherwise the width.
   std::size_t next(std::size_t x, bool touched) const {
     for (; x < width_; x = (x / 64 + 1) * 64) {
       const std::uint64_t word = (touched ? bits_[x / 64] : ~bits_[x / 64]) >> (x % 64);
@@ -176,7 +176,7 @@ PixelMessage encode_pixels(const Image& image, const Rect& rect, Operator op, La
     to += pixel * floats.size() / 4;
   };
   TouchedSpans spans(width);
-  std::size_t next = 0;  // behind the last run
+  std::size_t next = 0;  // first pixel behind the last run
   for (int y = rect.y; y < rect.y + rect.height; ++y) {
     const float* const row = image.at(rect.x, y);
     if (all) {
@@ -202,7 +202,7 @@ PixelMessage encode_pixels(const Image& image, const Rect& rect, Operator op, La
 
 std::size_t most_message_bytes(const Rect& rect, Layout layout) {
   if (!of_unknown_length(rect)) return bytes_of_all_pixels(rect, layout);
-  // One pixel in two touched is the most runs that there can be.
+  // There are most runs when every second pixel is touched.
   return head_bytes + most_packed_bytes(rect.pixels()) + sizeof(PixelRun) * (rect.pixels() / 2 + 1);
 }
 
@@ -226,7 +226,7 @@ PixelReader::PixelReader(const PixelMessage& message, const Rect& rect, Layout l
   pixels_ = pixels_.first(pixels_.size() - runs_.size());
 }
 
-// Calls use(pixels of the row) for every span of it that came, in which they are next.
+// Calls use(pixels) for every span of the row that was sent; its pixels are the next ones of the message.
 template <class Use>
 void PixelReader::for_spans(std::span<float> row, Use use) {
   assert(row.size() == 4 * std::size_t(rect_.width));

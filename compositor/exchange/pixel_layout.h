@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the pixels of a rectangle travel between ranks: which numbers, and which pixels at all.
+// How the pixels of a rectangle are sent between ranks: in which numbers, and which pixels at all.
 #pragma once
 
 #include <cstddef>
@@ -14,64 +14,64 @@
 
 namespace understudy::compositor {
 
-/// Before the pixels of a message.
+/// Length of the head, before the pixels of a message.
 constexpr std::size_t head_bytes = 16;
 
-/// Longer messages have a length that both sides know beforehand: all pixels travel, as floats.
+/// Messages that might be longer have a length that both sides know beforehand: all pixels are sent, as floats.
 constexpr std::size_t longest_of_unknown_length = std::size_t(1) << 30;
 
-/// Whether messages about `rect` are as long as their content asks for.
+/// Whether the length of messages about `rect` depends on their content.
 inline bool of_unknown_length(const volume::Rect& rect) {
   return 2 * head_bytes + most_packed_bytes(rect.pixels()) + 4 * rect.pixels() <= longest_of_unknown_length;
 }
 
-/// The length of a message with all pixels of `rect` and nothing gained by packing them. (Under `min` narrow
-/// numbers always travel in runs, and take up to 8 bytes for every two pixels more.)
+/// Returns the length of a message with all pixels of `rect`, unpacked. (Under `min`, narrow numbers are always
+/// sent in runs, which take up to 8 bytes more for every two pixels.)
 inline std::size_t bytes_of_all_pixels(const volume::Rect& rect, Layout layout) {
   return head_bytes + bytes_per_pixel(of_unknown_length(rect) ? layout : Layout::rgba32f) * rect.pixels();
 }
 
-/// Behind the pixels of a message: for each run so many pixels untouched, then so many that travel; runs go on
-/// from row to row.
+/// Runs follow the pixels of a message: for each run the number of untouched pixels, then of pixels that are
+/// sent; runs continue from row to row.
 constexpr std::size_t bytes_per_run = 8;
 
-/// Narrow numbers have none for an untouched pixel under `min`.
+/// Narrow numbers cannot represent an untouched pixel under `min`.
 inline bool must_travel_in_runs(volume::Operator op, Layout layout) {
   return op == volume::Operator::min && layout != Layout::rgba32f;
 }
 
-/// Whether a message about `rect` may leave pixels out.
+/// Whether a message about `rect` may omit pixels.
 inline bool may_travel_in_runs(const volume::Rect& rect, volume::Operator op, Layout layout, bool clear_too) {
   return of_unknown_length(rect) && (!clear_too || must_travel_in_runs(op, layout));
 }
 
-/// Untouched pixels of a row, fewer than so many in a line, travel all the same: a run would take more.
+/// Shorter holes in a row are sent, too: another run would take more bytes.
 inline std::size_t least_hole(volume::Operator op, Layout layout) {
   constexpr std::size_t least_saving = 32;  // bytes
   return must_travel_in_runs(op, layout) ? 1 : least_saving / bytes_per_pixel(layout);
 }
 
-/// One message, on its way out or on its way in.
+/// An outgoing or incoming message.
 class PixelMessage {
  public:
   PixelMessage() = default;
   explicit PixelMessage(std::size_t room)
       : own_(std::make_unique_for_overwrite<std::byte[]>(room)), room_(own_.get(), room), bytes_(room_) {}
-  /// In memory of somebody else's, who keeps it.
+  /// In memory that the caller owns.
   explicit PixelMessage(std::span<std::byte> room) : room_(room), bytes_(room) {}
 
   std::size_t size() const { return bytes_.size(); }
   std::span<const std::byte> bytes() const { return bytes_; }
   std::span<std::byte> room() { return room_; }
-  /// Less than there was room for is the message.
+  /// Shortens an outgoing message to `size`, if it fills less than its room.
   void shorten(std::size_t size) { bytes_ = bytes_.first(size); }
-  /// Where the message is if it has stayed elsewhere.
+  /// Set to where the message is, if it stays in its sender's memory.
   std::span<const std::byte>& seen() { return bytes_; }
-  /// How much of the room was filled.
+  /// How many bytes of the room were filled.
   std::size_t& received() { return received_; }
   std::size_t received() const { return received_; }
 
-  /// A count that travels along: of bytes that the sender knows to have travelled.
+  /// A count that is sent along: bytes that the sender knows to have been sent.
   void tell(std::uint64_t count);
   std::uint64_t told() const;
 
@@ -82,30 +82,30 @@ class PixelMessage {
   std::size_t received_ = 0;
 };
 
-/// The pixels of `image` in `rect`, which lies inside it. Unless `clear_too` is asked for, only those that a
-/// sample has reached (volume::neutral_value) travel, in runs, and packed if that is asked for. `room` is where
-/// the message is made if it is long enough for any.
+/// Encodes the pixels of `image` in `rect`, which lies inside it. Unless `clear_too` is set, only pixels that a
+/// sample has reached (volume::neutral_value) are sent, in runs, and packed if `packed` is set. The message is
+/// made in `room` if that is large enough for any message.
 PixelMessage encode_pixels(const volume::Image& image, const volume::Rect& rect, volume::Operator op,
                            Layout layout, bool packed, bool clear_too = false, std::span<std::byte> room = {});
 
-/// The longest message about this rectangle, and room for it.
+/// The length of the longest message about this rectangle, and memory for it.
 std::size_t most_message_bytes(const volume::Rect& rect, Layout layout);
 PixelMessage space_for_pixels(const volume::Rect& rect, Layout layout);
 
-/// Goes through the pixels of a message that has come in such memory, row by row.
+/// Reads the pixels of a message that has arrived in such memory, row by row.
 class PixelReader {
  public:
-  /// `message` outlives it. Throws RankLost when it is no such message.
+  /// `message` must outlive the reader. Throws RankLost if it is malformed.
   PixelReader(const PixelMessage& message, const volume::Rect& rect, Layout layout);
 
   const volume::Rect& rect() const { return rect_; }
 
-  /// The next row of the rectangle, which is `row`: sets the pixels that came, and leaves all others alone.
-  /// Throws RankLost when the message ends before; so do the others.
+  /// Reads the next row of the rectangle into `row`: sets the pixels that were sent, and leaves the others
+  /// unchanged. Throws RankLost if the message ends early, as the following functions do.
   void read_row(std::span<float> row);
   /// Blends the next row behind `row`.
   void blend_row_behind(volume::Operator op, std::span<float> row);
-  /// After the last row: throws when the message holds more.
+  /// To be called after the last row: throws if the message holds more.
   void end() const;
 
  private:
@@ -116,9 +116,9 @@ class PixelReader {
   volume::Rect rect_;
   Layout layout_;
   bool packed_ = false;
-  std::span<const std::byte> pixels_, runs_;  // that are left
+  std::span<const std::byte> pixels_, runs_;  // not read yet
   LastPixel last_{};
-  std::size_t untouched_ = 0, touched_ = 0;  // of the run that is open
+  std::size_t untouched_ = 0, touched_ = 0;  // left of the current run
 };
 
 }  // namespace understudy::compositor

@@ -20,7 +20,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr float largest_half = 65504;
 constexpr std::size_t lanes = 4;
 
-// A pixel, or one component after the other where a vector holds less (HWY_SCALAR).
+// A pixel, or one component after the other if a vector holds less (HWY_SCALAR).
 using Floats = hn::CappedTag<float, lanes>;
 using Words = hn::RebindToUnsigned<Floats>;
 using Ints = hn::RebindToSigned<Floats>;
@@ -33,7 +33,7 @@ constexpr int bits_of(Layout layout) {
   return layout == Layout::rgba32f ? 32 : layout == Layout::rgba16f ? 16 : 8;
 }
 
-/// What travels of a pixel's components, as integers.
+/// Returns components of pixels as the integers that are sent.
 template <Layout layout, class D>
 HWY_INLINE hn::Vec<D> numbers(D w, const float* from) {
   const hn::RebindToFloat<D> f;
@@ -51,7 +51,7 @@ HWY_INLINE hn::Vec<D> numbers(D w, const float* from) {
   }
 }
 
-/// The other way.
+/// The inverse of numbers().
 template <Layout layout>
 HWY_INLINE void store_floats(Word value, float* to) {
   const Floats f;
@@ -90,10 +90,10 @@ void get(const std::byte* from, std::size_t floats, float* to) {
   }
 }
 
-// A span is blocks of eight groups of eight pixels: a word with four bits for each group, and then the groups.
-// The four bits say by how many halves of a byte the group's numbers take. Component c of its pixels goes to
-// every fourth word from c on, without gaps. At the end of a span there may be less than eight pixels: as if
-// the last one came again, or one word a number where that is shorter.
+// A span consists of blocks of eight groups of eight pixels: a word with four bits for each group, then the
+// groups. The four bits are the number of half bytes that each number of the group takes. Component c of its
+// pixels goes to every fourth word from c on, without gaps. The last group of a span may have fewer than eight
+// pixels: it is stored as if the last one were repeated, or with one word per number if that is shorter.
 constexpr std::size_t group_pixels = 8;
 constexpr std::size_t group_words = lanes * group_pixels;
 constexpr std::size_t block_groups = packed_block_pixels / group_pixels;
@@ -151,7 +151,7 @@ HWY_INLINE void unpack_group(const std::uint32_t* from, std::uint32_t* last, flo
 
 using GroupPixels = std::make_integer_sequence<int, int(group_pixels)>;
 
-// Calls a generic lambda with `halves` as a constant.
+// Calls a generic lambda with `halves` as a compile-time constant.
 template <class Call>
 HWY_INLINE void with_constant(unsigned halves, Call call) {
   switch (halves) {
@@ -176,11 +176,11 @@ HWY_INLINE void with_constant(unsigned halves, Call call) {
   }
 }
 
-/// The last pixel before a group, and the group's numbers.
+/// The last pixel before a group, then the group's numbers.
 using GroupNumbers = std::array<std::uint32_t, lanes + group_words>;
 
-/// Zigzag differences of a group; returns how many halves of a byte the largest takes. Of `group` the first
-/// pixel is given, and it is the group's last one afterwards.
+/// Computes the zigzag differences of a group; returns how many half bytes the largest takes. The first pixel
+/// of `group` is an input; it becomes the last pixel of this group.
 template <Layout layout>
 HWY_INLINE unsigned differences(const float* floats, std::uint32_t* group, std::uint32_t* to) {
   constexpr int unused_bits = 32 - bits_of(layout);
@@ -191,7 +191,7 @@ HWY_INLINE unsigned differences(const float* floats, std::uint32_t* group, std::
   auto all = hn::Zero(d);
   for (std::size_t i = 0; i < group_words; i += hn::Lanes(d)) {
     auto difference = hn::BitCast(s, hn::Sub(hn::LoadU(d, group + lanes + i), hn::LoadU(d, group + i)));
-    // Around the end of narrow numbers, so that differences are no wider.
+    // Narrow numbers wrap around, so that differences are no wider than the numbers.
     if constexpr (unused_bits > 0)
       difference = hn::ShiftRight<unused_bits>(hn::ShiftLeft<unused_bits>(difference));
     const auto zigzag =
@@ -203,7 +203,7 @@ HWY_INLINE unsigned differences(const float* floats, std::uint32_t* group, std::
   return unsigned(std::bit_width(hn::GetLane(hn::MaxOfLanes(d, all))) + 3) / 4;
 }
 
-/// Like a group of less than eight pixels, as one that is whole.
+/// Fills a group of fewer than eight pixels by repeating its last one.
 HWY_INLINE void fill_group(const float* floats, std::size_t pixels, float* to) {
   std::memcpy(to, floats, sizeof(float) * lanes * pixels);
   for (std::size_t i = pixels; i < group_pixels; ++i)

@@ -13,7 +13,7 @@ namespace {
 
 using volume::Rect;
 
-/// The k-th of `count` regions of `whole`, cut across its longer side so that none is empty before it must be.
+/// Returns the k-th of `count` regions of `whole`, cut across its longer side; none is empty unless it must be.
 Rect region_of(const Rect& whole, std::size_t k, std::size_t count) {
   const auto cut = [&](int length, std::size_t at) {
     return int(std::uint64_t(length) * std::uint64_t(at) / std::uint64_t(count));
@@ -29,7 +29,7 @@ Rect region_of(const Rect& whole, std::size_t k, std::size_t count) {
   return result;
 }
 
-/// Rounds in the making: what every rank holds now.
+/// A schedule under construction: what every rank holds now.
 class Rounds {
  public:
   Rounds(std::span<const Rank> order, std::span<const Rect> footprints)
@@ -52,7 +52,7 @@ class Rounds {
     round_ = {};
     round_.afterwards.assign(held_.size(), {});
   }
-  /// The part of `from`'s image that lies in `region` goes to `to`; what is given to nobody is dropped.
+  /// Gives the part of `from`'s image that lies in `region` to `to`; what is given to no rank is dropped.
   void give(Rank from, Rank to, const Rect& region) {
     const Rect rect = intersection(held(from), region);
     if (rect.empty()) return;
@@ -87,7 +87,7 @@ void pair_up(Rounds& rounds) {
     rounds.begin();
     std::vector<Rank> winners;
     for (std::size_t i = 0; i < left.size(); i += 2) {
-      // Rank 0 is where the image must end, so it wins its pair.
+      // The image must end on rank 0, so rank 0 wins its pair.
       const bool second_wins = i + 1 < left.size() && left[i + 1] == 0;
       winners.push_back(left[second_wins ? i + 1 : i]);
       rounds.keep(winners.back());
@@ -101,7 +101,7 @@ void pair_up(Rounds& rounds) {
   }
 }
 
-/// Tiles to ranks, so that much of what a rank has to show is its own already: the largest overlap first.
+/// Assigns regions to ranks so that a rank already holds much of its region: the largest overlap first.
 std::vector<Rank> owners_of_tiles(const Rounds& rounds) {
   const std::vector<Rank>& shown = rounds.shown();
   const std::size_t count = shown.size();
@@ -140,9 +140,9 @@ void send_directly(Rounds& rounds) {
   rounds.end();
 }
 
-/// `ranks`, front first, exchange in groups of each factor; group members are neighbours first, then as far
-/// apart as the groups before were large. Region r of a group's members is cut into one region for each of
-/// them.
+/// `ranks`, front first, exchange in groups, whose size in each round is one of `factors`. The members of a
+/// group are neighbours in the first round, then as far apart as the groups before were large. The region that
+/// the members share is cut into one region for each of them.
 void exchange_in_groups(Rounds& rounds, std::span<const Rank> ranks, std::span<const int> factors) {
   std::vector<Rect> regions(ranks.size(), rounds.whole());
   std::size_t stride = 1;

@@ -11,31 +11,31 @@
 
 namespace understudy::compositor {
 
-/// How the parts of a composited image come to the application: each rank that reaches the application's
-/// memory writes its own there, or all send theirs to rank 0.
+/// How the regions of a composited image reach the application: each rank that reaches the image buffer writes
+/// its own there, or all send theirs to rank 0.
 enum class Gather : std::uint8_t { direct, root };
 
-/// Whether parts of an image are composited while others are still drawn; automatic: where that is faster.
+/// Whether parts of an image are composited while others are still drawn; automatic: if that is faster.
 enum class Overlap : std::uint8_t { automatic, on, off };
 
 struct ExchangeSettings {
-  std::optional<Algorithm> algorithm;  ///< none: for each image the one that costs least
+  std::optional<Algorithm> algorithm;  ///< null: the cheapest one for each image
   Layout layout = Layout::rgba32f;
   Gather gather = Gather::direct;
   Overlap overlap = Overlap::automatic;
-  std::optional<bool> packed;  ///< pixels travel packed; none: where that is faster (packing_pays())
+  std::optional<bool> packed;  ///< whether pixels are sent packed; null: if that is faster (packing_pays())
 };
 
-/// "auto", or an algorithm's name as in name_of(): "direct-send". False, with `settings` unchanged, for any
-/// other.
+/// Sets "auto", or an algorithm by its name_of(): "direct-send". Returns false, with `settings` unchanged, for
+/// any other name.
 bool set_algorithm(ExchangeSettings& settings, std::string_view name);
-/// "float", "half" or "byte". False, with `settings` unchanged, for any other.
+/// Sets "float", "half" or "byte". Otherwise as set_algorithm().
 bool set_layout(ExchangeSettings& settings, std::string_view name);
-/// "direct" or "root". False, with `settings` unchanged, for any other.
+/// Sets "direct" or "root". Otherwise as set_algorithm().
 bool set_gather(ExchangeSettings& settings, std::string_view name);
-/// "auto", "on" or "off". False, with `settings` unchanged, for any other.
+/// Sets "auto", "on" or "off". Otherwise as set_algorithm().
 bool set_overlap(ExchangeSettings& settings, std::string_view name);
-/// Likewise.
+/// As set_overlap().
 bool set_packed(ExchangeSettings& settings, std::string_view name);
 
 }  // namespace understudy::compositor

@@ -15,7 +15,7 @@ namespace understudy::compositor {
 
 namespace {
 
-/// Segments begin at cache lines.
+/// Segments begin at multiples of a cache line.
 constexpr std::size_t alignment = 64;
 
 std::size_t bytes_of_a_rank() {
@@ -27,7 +27,7 @@ std::size_t bytes_of_a_rank() {
                     SharedSegments::most_bytes);
 }
 
-/// 0, with errno: it cannot be known.
+/// Returns 0, with errno set, if the size cannot be determined.
 std::size_t size_of(const FileDescriptor& memory) {
   struct stat status {};
   return ::fstat(memory.get(), &status) == 0 ? std::size_t(status.st_size) : 0;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages that stay where they are: memory of each rank that all ranks of the machine see, so that what one
-// has written for another is read in place (Marchesin et al. 2008 composite in memory that a machine's
-// processes share).
+// Messages that are read in place: each rank has memory that all ranks of its machine map, and it writes there
+// what it has for another (Marchesin et al. 2008 composite in memory that a machine's processes share).
 #pragma once
 
 #include <cstddef>
@@ -17,33 +16,33 @@ namespace understudy::compositor {
 
 class SharedSegments {
  public:
-  /// What one rank may have at most; pages are taken when they are first written, and kept.
+  /// The most memory of one rank; pages are allocated when they are first written, and kept.
   static constexpr std::size_t most_bytes = std::size_t(1) << 30;
 
-  /// Memory for the segments of one rank, which other processes find at /proc/PID/fd: of most_bytes, or less
-  /// where this process may have few addresses (RLIMIT_AS), as each rank maps the memory of all. Throws
+  /// Makes memory for the segments of one rank, which other processes find at /proc/PID/fd: most_bytes, or less
+  /// if this process has a limited address space (RLIMIT_AS), because each rank maps the memory of all. Throws
   /// std::system_error.
   static FileDescriptor make_memory();
 
-  /// The memories of all ranks, by rank. Throws std::system_error.
+  /// Maps the memories of all ranks, by rank. Throws std::system_error.
   SharedSegments(std::span<const FileDescriptor> memories, Rank mine);
   ~SharedSegments();
   SharedSegments(const SharedSegments&) = delete;
   SharedSegments& operator=(const SharedSegments&) = delete;
 
-  /// Empty when there is not so much left.
+  /// Returns memory for a message; empty if there is not enough left.
   std::span<std::byte> segment(std::size_t bytes);
-  /// Nobody looks at this rank's segments any longer.
+  /// Frees all segments of this rank: no rank reads them any more.
   void clear() { used_ = 0; }
 
-  /// Where bytes lie, as another rank may be told.
+  /// Where bytes lie, as another rank is told.
   struct Place {
     std::uint64_t first = 0;
     std::uint64_t bytes = 0;
   };
-  /// Nothing for bytes that are in no segment of this rank.
+  /// Null for bytes that are in no segment of this rank.
   std::optional<Place> place_of(std::span<const std::byte> bytes) const;
-  /// Throws RankLost when there can be nothing.
+  /// Throws RankLost if `place` lies outside the rank's memory.
   std::span<const std::byte> at(Rank rank, Place place) const;
 
  private:

@@ -16,7 +16,7 @@ namespace understudy::compositor {
 
 namespace {
 
-// One queue of messages from each rank to each other: broadcast and gather are made of plain messages, which
+// One queue of messages from each rank to each other. Broadcast and gather consist of plain messages, which
 // keep their order, so the two never mix.
 class Group {
  public:
@@ -37,7 +37,7 @@ class Group {
     send_control(from, to, std::move(message));
   }
 
-  /// `seen` is set if the message was left where it is.
+  /// `seen` is set if the message was left in place.
   std::size_t take(Rank from, Rank to, std::span<std::byte> bytes, bool may_be_less = false,
                    std::span<const std::byte>* seen = nullptr) {
     std::unique_lock lock(mutex_);
@@ -65,7 +65,7 @@ class Group {
     return std::ranges::any_of(segments_[std::size_t(rank)],
                                [&](const auto& segment) { return segment.get() == bytes.data(); });
   }
-  /// So that the address sanitizer sees who looks into one of them later.
+  /// Frees the memory, so that the address sanitizer reports ranks that read it later.
   void clear_segments(Rank rank) { segments_[std::size_t(rank)].clear(); }
 
   void leave_control_message(Rank to, ControlMessage control) {
@@ -97,7 +97,7 @@ class Group {
     QueuedMessage() = default;
     explicit QueuedMessage(std::span<const std::byte> copied) : bytes(copied.begin(), copied.end()) {}
     std::vector<std::byte> bytes;
-    std::span<const std::byte> left;  ///< not empty: where the message is
+    std::span<const std::byte> left;  ///< not empty: the message was left here
   };
 
   void send_control(Rank from, Rank to, QueuedMessage message) {
@@ -123,7 +123,7 @@ class Group {
   std::condition_variable arrived_;
   std::vector<std::deque<QueuedMessage>> queues_;
   std::vector<std::deque<ControlMessage>> control_messages_;         // by receiver
-  std::vector<std::vector<std::unique_ptr<std::byte[]>>> segments_;  // by owner, who alone touches the list
+  std::vector<std::vector<std::unique_ptr<std::byte[]>>> segments_;  // by owner, which alone uses the list
   std::string broken_;
 };
 

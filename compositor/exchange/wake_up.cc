@@ -12,8 +12,8 @@
 
 namespace understudy::compositor {
 
-/// A cache line of its own, so that a rank that looks at its wake-up disturbs no other. Zero is a wake-up at
-/// rest.
+/// On a cache line of its own, so that a rank that reads its slot does not slow down the others. Zero bytes are
+/// a slot at rest.
 struct alignas(64) WakeUp::Slot {
   std::atomic<std::uint32_t> notified;
   std::atomic<std::uint32_t> sleepers;
@@ -48,7 +48,7 @@ void WakeUp::sleep(std::uint32_t notified, std::chrono::microseconds most) {
   Slot& slot = slots_[std::size_t(mine_)];
   const timespec patience{most.count() / 1'000'000, most.count() % 1'000'000 * 1000};
   ++slot.sleepers;
-  // Returns at once when the number is another one already.
+  // Returns at once if the number has changed already.
   ::syscall(SYS_futex, &slot.notified, FUTEX_WAIT, notified, &patience, nullptr, 0);
   --slot.sleepers;
 }

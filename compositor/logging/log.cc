@@ -11,11 +11,11 @@ namespace {
 constinit std::atomic<const char*> program{"understudy"};
 
 void write_line(std::string_view line) {
-  // At once: lines of several threads and processes stay whole.
+  // In one call, so that lines of several threads and processes do not mix.
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
-/// Lines up to this length need no memory.
+/// Lines up to this length are formatted without allocating memory.
 constexpr std::size_t usual_length = 1024;
 
 Level level_of_environment() noexcept {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one way in which Understudy's libraries and programs write about what they do: lines on stderr,
-// "understudy: what, where, what to do". A program's own output (what `print` prints, a summary, a progress
-// bar) does not go through here.
+// Log lines of Understudy's libraries and programs, on stderr: "understudy: what, where, what to do". A
+// program's own output (that of `print`, a summary, a progress bar) is not written here.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,13 +15,13 @@ namespace understudy::logging {
 /// Whether lines of this level are written. UNDERSTUDY_LOG is read once.
 bool is_written(Level level) noexcept;
 
-/// `text` as one line, after the program's name. Never throws: a line that cannot be written is lost.
+/// Writes `text` as one line, after the program's name. Never throws: a line that cannot be written is lost.
 void write(Level level, std::string_view text) noexcept;
 
-/// A program's lines begin with "understudy" where it names no other; `name` must outlive it.
+/// Sets the name that lines begin with, "understudy" by default. The string must stay valid.
 void set_program(const char* name) noexcept;
 
-/// Formats and writes; costs a comparison where the level is not written.
+/// Formats and writes a line; costs only a comparison if the level is not written.
 template <typename... Arguments>
 void log(Level level, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   if (is_written(level)) write(level, fmt::format(format, std::forward<Arguments>(arguments)...));

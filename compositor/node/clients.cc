@@ -15,7 +15,7 @@ namespace understudy::compositor {
 
 namespace {
 
-/// A message for the ranks.
+/// Whether an application's message is for all ranks.
 bool is_request(const MessageType& type) {
   if (const auto message = type.as<NodeMessage>())
     return *message >= NodeMessage::begin_volume && *message <= NodeMessage::integrals;
@@ -46,7 +46,7 @@ Clients::Event Clients::next() {
     std::vector<pollfd> fds{{launcher_.fd(), POLLIN, 0}};
     std::vector<std::uint64_t> numbers;
     bool unfinished = false;
-    // In turn, beginning behind the application that was heard last, but for those that rest.
+    // In turn, beginning behind the application that was heard last, without those that rest.
     const Deadline now = Clock::now();
     const auto add = [&](auto first, auto last) {
       for (; first != last; ++first) {
@@ -70,7 +70,7 @@ Clients::Event Clients::next() {
           turn_began_ = Clock::now();
           const auto* memory = std::get_if<MemoryGiven>(&*event);
           refused_ = memory != nullptr && memory->memory.bytes() == 0;
-          // A step of a load takes what it takes.
+          // A step of a load may take any time, even after its application has gone.
           const auto* request = std::get_if<Request>(&*event);
           if (request == nullptr || (request->message.type != LoadMessage::load_volume &&
                                      request->message.type != LoadMessage::continue_load))
@@ -91,9 +91,9 @@ void Clients::end_turn() {
   if (!clients_.contains(last_heard_)) turns_.forget(last_heard_);
 }
 
-// In milliseconds, for poll(): until somebody has rested, or may have stalled; -1: until something happens.
+// How long poll() may wait, in milliseconds: until an application has rested or may have stalled; -1: for ever.
 int Clients::wait_at_most(bool unfinished, Deadline now) const {
-  // A message may be stalled for up to twice the patience before that is seen.
+  // A stalled message is noticed after at most twice the patience.
   Deadline until = unfinished ? now + stall_patience_ : Deadline::max();
   for (const auto& [number, connection] : clients_)
     if (const Deadline rested = turns_.rests_until(number); rested > now) until = std::min(until, rested);
@@ -101,7 +101,7 @@ int Clients::wait_at_most(bool unfinished, Deadline now) const {
   return int(std::chrono::ceil<std::chrono::milliseconds>(until - now).count());
 }
 
-// Takes in the applications that the launcher hands over; false when it has gone.
+// Accepts the applications that the launcher passes on; false if the launcher has gone.
 bool Clients::hear_launcher() {
   try {
     while (std::optional<Message> message = launcher_.receive_some()) {
@@ -129,7 +129,7 @@ bool Clients::hear_launcher() {
   }
 }
 
-// A message for the ranks, if one is complete.
+// Returns the event of an application's message, if that is complete.
 std::optional<Clients::Event> Clients::hear(std::uint64_t number, Connection& connection) {
   try {
     std::optional<Message> message = connection.receive_some();
@@ -176,7 +176,7 @@ void Clients::drop(std::uint64_t number, const std::string& why) {
   if (!why.empty()) logging::log(logging::Level::warn, "dropped application {}: {}", number, why);
   heartbeat_->end();
   clients_.erase(number);
-  // What it has in hand counts, too.
+  // A request in progress counts, too: end_turn() forgets its client.
   if (turn_began_ == Deadline() || number != last_heard_) turns_.forget(number);
   departed_.push_back(number);
 }

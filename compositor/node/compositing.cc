@@ -51,7 +51,7 @@ std::optional<volume::Rect> Compositing::composite(const ImageTask& task, volume
 void Compositing::add_cost_of_whole_windows(const ImageTask& task, const ImageBuffers::Memory& memory,
                                             volume::FrameCounts& counts) {
   if (task.divided) {
-    // Leaves leave nothing out: outside of them there is nothing of a rank's.
+    // Footprints save nothing here: a rank has nothing outside its leaf.
     counts.bytes_of_whole_windows += counts.bytes_exchanged;
     counts.messages_of_whole_windows += counts.messages;
     return;

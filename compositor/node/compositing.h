@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the images of all ranks become one image in the application's memory: which exchange is chosen for it,
-// what travels, and what would have without footprints.
+// Combines the images of all ranks into one image in the image buffer: which exchange is chosen, what is sent,
+// and what would be sent without footprints.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +19,15 @@
 
 namespace understudy::compositor {
 
-/// Of one image: the same on all ranks.
+/// One image; the same on all ranks.
 struct ImageTask {
   std::uint64_t client = 0;
   volume::Operator op{};
   volume::Rect window;          ///< that all samples lie in
-  Layout layout{};              ///< that its parts travel in
-  bool only_footprints = true;  ///< travel
+  Layout layout{};              ///< in which its parts are sent
+  bool only_footprints = true;  ///< no whole windows are sent
   std::vector<Rank> order;      ///< all ranks, front first
-  bool divided = false;         ///< each rank draws a leaf of its own: there is nothing to blend
+  bool divided = false;         ///< each rank draws a leaf of its own: nothing is blended
 };
 
 class Compositing {
@@ -35,22 +35,22 @@ class Compositing {
   Compositing(Communicator& communicator, const ExchangeSettings& settings)
       : communicator_(communicator), settings_(settings) {}
 
-  /// The layout of an image whose request may do with half floats.
+  /// Returns the layout of an image; half floats if the request allows them and the settings say floats.
   Layout layout(bool may_travel_as_halves) const;
 
-  /// Collective, before anything else: measures the communicator, once.
+  /// Collective, before anything else: measures message costs, once.
   void prepare();
 
-  /// Collective: what the ranks have drawn, `mine` here and `footprints` by rank, goes to the memory. Returns
-  /// the rectangle that the memory then holds: `whole` where one is given, with all footprints in it, or the
-  /// smallest that holds these. Nothing, on all ranks, where the memory has no room for it. Adds to `counts`,
-  /// on rank 0, what travelled.
+  /// Collective: composites what the ranks have drawn, `mine` here and `footprints` by rank, in the image
+  /// buffer. Returns the rectangle that the buffer then holds: `whole` if given, which contains all footprints,
+  /// otherwise the smallest that does. Null, on all ranks, if the buffer is too small. On rank 0, adds what was
+  /// sent to `counts`.
   std::optional<volume::Rect> composite(const ImageTask& task, volume::Image mine,
                                         std::span<const volume::Rect> footprints,
                                         const ImageBuffers::Memory& memory, volume::FrameCounts& counts,
                                         const std::optional<volume::Rect>& whole = std::nullopt);
 
-  /// Adds to `counts` what the image would cost if every rank sent the window whole.
+  /// Adds to `counts` what the image would cost if every rank sent the whole window.
   void add_cost_of_whole_windows(const ImageTask& task, const ImageBuffers::Memory& memory,
                                  volume::FrameCounts& counts);
 
@@ -61,7 +61,7 @@ class Compositing {
   Communicator& communicator_;
   ExchangeSettings settings_;
   std::optional<MessageCost> message_cost_;
-  // What images of such a window cost without footprints.
+  // The cost of images without footprints, for this window, layout and reached_by.
   volume::Rect priced_window_;
   Layout priced_layout_{};
   std::vector<bool> priced_reached_by_;

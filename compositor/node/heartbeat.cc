@@ -61,8 +61,8 @@ void Heartbeat::beat(const std::stop_token& stop) {
                      encode(Alive{int(std::min<std::int64_t>(unwanted.count(), limits::max_unwanted_ms))}),
                      Connection::now_or_never());
     } catch (const ConnectionLost&) {
-      // The rank's main thread hears of it on its own; a launcher that does not read now may do so later, but
-      // not the rest of a message that was cut off.
+      // The rank's main thread detects a lost launcher itself. A launcher that does not read now may do so
+      // later, but it never gets the rest of a message that was cut off.
     }
   }
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rank 0's word to the launcher, once a second, that it lives, and for how long it has been at a request whose
-// application has gone: what rank 0 waits for then may never come, as from a rank that was stopped or a host
-// that was cut off, and it cannot tell itself. The launcher ends such a group (compositor/service/broker.h).
+// Tells the launcher once a second that rank 0 is alive, and for how long it has worked on a request whose
+// application has gone: rank 0 may then wait for something that never comes, as from a rank that was stopped or
+// a host that was cut off, and cannot detect that itself. The launcher ends such a group
+// (compositor/service/broker.h).
 #pragma once
 
 #include <chrono>
@@ -16,10 +17,10 @@ namespace understudy::compositor {
 
 class Heartbeat {
  public:
-  /// Over the connection to the launcher, on which nobody else may send from now on. Throws std::system_error.
+  /// Uses the connection to the launcher; no other code may send on it from now on. Throws std::system_error.
   explicit Heartbeat(const Connection& launcher);
 
-  /// A request of the application behind this socket is in hand, which stays open until end().
+  /// Begins a request of the application behind this socket, which stays open until end().
   void begin(int application);
   void end();
 
@@ -30,8 +31,8 @@ class Heartbeat {
   Connection launcher_;
   std::mutex mutex_;
   std::condition_variable_any woken_;
-  int application_ = -1;                ///< of the request in hand; -1: none is
-  std::optional<Deadline> gone_since_;  ///< that application
+  int application_ = -1;                ///< of the current request; -1: there is none
+  std::optional<Deadline> gone_since_;  ///< since when the application has been gone
   std::jthread thread_;
 };
 

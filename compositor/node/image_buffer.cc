@@ -14,9 +14,9 @@ namespace understudy::compositor {
 
 namespace {
 
-/// Where rank 0 has the file behind a memory open.
+/// Where rank 0 has the file of an image buffer open.
 struct Place {
-  std::array<char, 40> machine{};  ///< the running kernel's own name
+  std::array<char, 40> machine{};  ///< the running kernel's boot id
   std::int64_t process = 0;
   std::int64_t descriptor = -1;
   std::uint64_t device = 0;
@@ -45,11 +45,11 @@ Place place_of(const ImageBuffer& memory) {
   return place;
 }
 
-/// Empty where this rank does not reach it: on another machine, in another container, as another user.
+/// Maps the image buffer; empty if this rank does not reach it (another machine, container or user).
 ImageBuffer reached(const Place& place) {
   if (place.machine != this_machine() || place.machine.front() == 0) return {};
   const std::string path = fmt::format("/proc/{}/fd/{}", place.process, place.descriptor);
-  // Another container has other processes under the same numbers, whose files must not so much as be opened.
+  // In another container the same number is another process, whose files must not be opened.
   const FileDescriptor found(::open(path.c_str(), O_PATH | O_CLOEXEC));
   struct stat status {};
   if (!found || ::fstat(found.get(), &status) != 0 || status.st_dev != place.device ||

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The memory that an application's images go to, as every rank of the group sees it: ranks on rank 0's
-// machine map it too, and put their regions there themselves; the others send theirs to rank 0.
+// The image buffers of applications, as every rank sees them: ranks on rank 0's machine map them too, and write
+// their regions there themselves; the others send theirs to rank 0.
 #pragma once
 
 #include <cstdint>
@@ -17,19 +17,19 @@ namespace understudy::compositor {
 class ImageBuffers {
  public:
   struct Memory {
-    std::size_t floats = 0;        ///< that it holds
-    std::span<float> here;         ///< as this rank sees it; empty where it does not
+    std::size_t floats = 0;        ///< size of the buffer
+    std::span<float> here;         ///< as this rank maps it; empty if it does not
     std::vector<bool> reached_by;  ///< by rank, the same on all ranks
   };
 
   ImageBuffers(Communicator& communicator, Gather gather) : communicator_(communicator), gather_(gather) {}
 
-  /// Collective. `given` is, on rank 0, what the application gave: empty when that was no use. It takes the
-  /// place of what the application gave before.
+  /// Collective. On rank 0, `given` is what the application gave, empty if that was unusable. It replaces the
+  /// application's previous buffer.
   void share(std::uint64_t client, ImageBuffer given);
   void forget_client(std::uint64_t client) { memories_.erase(client); }
 
-  /// Without floats where the application has given none.
+  /// Zero floats if the application has given no buffer.
   const Memory& of(std::uint64_t client) const;
 
  private:

@@ -27,7 +27,7 @@ std::vector<Rect> divide_image(Communicator& communicator, RankRenderer& rendere
   const auto groups = std::size_t(arrangement.groups());
   const auto mine = std::size_t(arrangement.place(communicator.rank()).group);
   const std::vector<Rect> tiles = tiles_of(pixels);
-  // Neighbouring tiles are estimated by different groups, so that none estimates all expensive tiles.
+  // Neighbouring tiles are estimated by different groups, so that no group estimates all expensive tiles.
   std::vector<Rect> own;
   for (std::size_t tile = mine; tile < tiles.size(); tile += groups) own.push_back(tiles[tile]);
   const std::size_t most = (tiles.size() + groups - 1) / groups;
@@ -35,7 +35,7 @@ std::vector<Rect> divide_image(Communicator& communicator, RankRenderer& rendere
   try {
     std::ranges::copy(renderer.estimated_costs(client, request, own), told.begin());
   } catch (const std::exception&) {
-    std::ranges::fill(told, 0.0F);  // what it cannot estimate it cannot draw, and will say so
+    std::ranges::fill(told, 0.0F);  // this rank cannot draw either, and will refuse
   }
   communicator.gather_to_all(std::as_bytes(std::span(told)), std::as_writable_bytes(std::span(heard)));
   std::vector<float> costs(tiles.size());

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The life of a render node: rank 0 listens to the applications and tells all ranks what to do; every rank
-// keeps and draws its share; the images are composited (exchange/) and rank 0 leaves the image in the
-// application's memory.
+// Runs one rank of a node group: rank 0 receives the applications' requests and tells all ranks what to do;
+// every rank keeps and draws its share; images are composited (exchange/) in the application's image buffer.
 #pragma once
 
 #include <chrono>
@@ -22,24 +21,24 @@ struct NodeSettings {
   /// Applications that pause for longer in the middle of a message are dropped.
   std::chrono::milliseconds stall_patience = limits::stall_patience;
   ExchangeSettings exchange;
-  /// Makes what draws a rank's bricks.
+  /// Makes the renderer of a rank's bricks.
   volume::BrickRendererFactory make_renderer = volume::cpu_renderer;
   /// Whether ranks divide volumes or images.
   SortSettings sort;
-  /// Who gets which bricks; for Sort::last.
+  /// Which rank gets which bricks; for Sort::last.
   BalanceSettings balance;
   volume::ReadableFiles files;  ///< that applications may load
   ClientLimits limits = client_limits(1, {});
 };
 
 /// Collective over `communicator`: every rank of the group calls it with the same arguments. Returns true when
-/// the launcher behind `control_path` has closed its connection; false, on rank 0, when it could not be
-/// reached: that has been said on stderr, and the other ranks return as well.
+/// the launcher at `control_path` has closed its connection; false, on rank 0, if it could not be reached: that
+/// has been logged, and the other ranks return as well.
 ///
-/// What one rank cannot do (memory, a senseless request) all ranks learn before anything depends on it, and the
-/// application gets a refusal. Anything else that fails, such as memory in the middle of an exchange, is
-/// thrown: the caller then must end the group with communicator.abandon(), or the other ranks would wait for
-/// ever.
+/// If one rank cannot perform a request (memory, a senseless request), all ranks learn it before anything
+/// depends on it, and the application gets a refusal. Any other failure, such as lack of memory in the middle
+/// of an exchange, is thrown: the caller must then end the group with communicator.abandon(), or the other
+/// ranks would wait for ever.
 bool run_node(Communicator& communicator, const std::string& control_path, const NodeSettings& settings = {});
 
 }  // namespace understudy::compositor

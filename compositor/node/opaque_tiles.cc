@@ -12,7 +12,7 @@ namespace {
 
 using volume::Rect;
 
-// A control message begins with the image's number; indices of tiles follow, row after row of the window's
+// A control message consists of the image's number and of the indices of tiles, row after row of the window's
 // tiles.
 constexpr std::size_t tiles_per_control_message = most_control_bytes / sizeof(std::uint32_t) - 1;
 
@@ -35,7 +35,7 @@ OpaqueTiles::OpaqueTiles(Communicator& communicator, std::uint32_t number, const
       tiles_(volume::tiles_touched(window_)),
       hidden_(tiles_.pixels()),
       control_heard_(footprints.size()) {
-  // Control messages go where footprints share a tile.
+  // Control messages go to ranks whose footprints share a tile with this rank's.
   const Rect mine = volume::tiles_touched(footprints[std::size_t(communicator.rank())]);
   std::vector<Rank>* side = &nearer_;
   for (const Rank rank : order) {
@@ -92,7 +92,7 @@ void OpaqueTiles::tell(std::size_t least) {
 void OpaqueTiles::hear(const ControlMessage& control) {
   std::vector<std::uint32_t> words(control.bytes.size() / sizeof(std::uint32_t));
   std::memcpy(words.data(), control.bytes.data(), sizeof(std::uint32_t) * words.size());
-  // Of an image that was refused somewhere control messages may be left.
+  // Control messages may be left from an image that some rank refused.
   if (words.empty() || words.front() != number_) return;
   ++control_heard_[std::size_t(control.from)];
   for (const std::uint32_t index : std::span(words).subspan(1))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the ranks of a node group tell each other of a request.
+// What the ranks of a node group send each other about a request.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace understudy::compositor {
 
 enum class Step : std::uint32_t { end, forget_client, share_memory, request, texels };
 
-/// What rank 0 broadcasts before anything else. A request's payload follows as the application sent it; of
-/// texels their boxes follow, and then to each rank what it shows of them.
+/// What rank 0 broadcasts first. The payload of a request follows as the application sent it. For texels their
+/// boxes follow, then to each rank the texels that it shows.
 struct Order {
   Step step = Step::end;
   MessageType type{};
@@ -29,23 +29,23 @@ struct Order {
   std::uint64_t payload_bytes = 0;
   volume::VolumeId volume = 0;
   std::uint64_t boxes = 0;
-  bool overlapped = false;  ///< an image is composited while it is drawn
+  bool overlapped = false;  ///< whether an image is composited while it is drawn
 };
 
-/// What every rank tells every other about its part in a request.
+/// What every rank sends every other about its part in a request.
 struct Outcome {
   bool refused = false;
   volume::Rect footprint;
   volume::FrameCounts counts;
-  std::uint32_t control_messages = 0;  ///< of opaque tiles, to every rank behind
+  std::uint32_t control_messages = 0;  ///< about opaque tiles, to each rank behind
   std::uint64_t control_message_count = 0, control_bytes = 0;
-  int process = 0, descriptor = -1;  ///< where this rank keeps the begun volume, if others read it
+  int process = 0, descriptor = -1;  ///< where this rank keeps the new volume, if others read it
   RankLoad load;
 };
 
-using Reason = std::array<char, limits::max_text_bytes>;  // ends with a zero
+using Reason = std::array<char, limits::max_text_bytes>;  // zero-terminated
 
-/// This rank's, with what others want to know only of the first that refused.
+/// This rank's outcome, with a reason that others need only from the first rank that refused.
 struct OwnOutcome : Outcome {
   Reason reason{};
   std::optional<VolumeKey> filling;  ///< the volume whose texels the order concerns
@@ -61,7 +61,7 @@ inline const Outcome* first_refusal(const std::vector<Outcome>& outcomes) {
   return found == outcomes.end() ? nullptr : &*found;
 }
 
-/// Adds up what the ranks did; the time is the slowest rank's.
+/// Adds up what the ranks did; times are the slowest rank's, except that of the processors.
 inline volume::FrameCounts sum(const std::vector<Outcome>& outcomes) {
   volume::FrameCounts total;
   for (const Outcome& outcome : outcomes) {

@@ -13,7 +13,7 @@ namespace {
 using volume::Image;
 using volume::Rect;
 
-// What every rank tells every other of its part of a band.
+// What every rank tells every other about its part of a band.
 struct BandOutcome {
   bool refused = false;
   Rect footprint;
@@ -25,7 +25,7 @@ std::vector<BandOutcome> agree(Communicator& communicator, BandOutcome mine) {
   return outcomes;
 }
 
-// The rows of a band, in the memory that holds `whole`.
+// Returns the rows of a band in the image buffer, which holds `whole`.
 ImageBuffers::Memory rows_of(const ImageBuffers::Memory& memory, const Rect& whole, const Rect& band) {
   ImageBuffers::Memory rows = memory;
   rows.floats = 4 * band.pixels();

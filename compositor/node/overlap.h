@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compositing while drawing: an image is drawn in bands of rows, and each band is composited while the next
-// one is drawn, so that a slow network costs little more than its last band. Nearer ranks do not tell farther
-// ones of opaque tiles meanwhile: all draw the same band at the same time, and control messages would come too
-// late.
+// Compositing while drawing: an image is drawn in bands of rows, and each band is composited while the next one
+// is drawn, so that a slow network costs little more than its last band. Nearer ranks do not tell farther ones
+// of opaque tiles meanwhile: all draw the same band at the same time, and control messages would come too late.
 #pragma once
 
 #include <cstdint>
@@ -18,32 +17,32 @@
 
 namespace understudy::compositor {
 
-/// `rect` from the bottom up, in at most 8 bands of 64 Ki pixels or more, which begin at multiples of 16 rows
-/// from its lowest.
+/// Divides `rect` from the bottom up into at most 8 bands of 64 Ki pixels or more (the last may have fewer),
+/// which begin at multiples of 16 rows above its lowest row.
 std::vector<volume::Rect> bands_of(const volume::Rect& rect);
 
-/// Draws and composites an image band by band; collective. `draw` gives this rank's image of a band, or
-/// nothing where it cannot go on: then all ranks give up after the same band. `whole` is the rectangle that the
-/// memory holds afterwards, the same on all ranks; all that is drawn lies in it. Returns whether the image is
-/// there; adds to `travelled` as Compositing::composite() does. The communicator is used by other threads than
-/// the caller's meanwhile, one at a time. Throws what an exchange throws: then this rank is out of step with
-/// the others, and must not go on.
+/// Draws and composites an image band by band; collective. `draw` returns this rank's image of a band, or null
+/// if it cannot go on: then all ranks give up after the same band. `whole` is the rectangle that the image
+/// buffer holds afterwards, the same on all ranks; all that is drawn lies in it. Returns whether the image is
+/// complete; adds to `travelled` as Compositing::composite() does. Meanwhile threads other than the caller's
+/// use the communicator, one at a time. Throws what an exchange throws: this rank is then out of step with the
+/// others, and must not go on.
 bool draw_and_composite(Communicator& communicator, Compositing& compositing, const ImageTask& task,
                         const ImageBuffers::Memory& memory, const volume::Rect& whole,
                         const std::function<std::optional<volume::Image>(const volume::Rect& band)>& draw,
                         volume::FrameCounts& travelled);
 
-/// What a rank does instead that cannot even begin.
+/// Called instead by a rank that cannot even begin.
 void refuse_to_draw(Communicator& communicator);
 
-/// Whether the next image is drawn in bands: measured, not predicted. What is not done is tried now and then,
-/// where compositing takes a part of the time that is worth it.
+/// Decides whether the next image is drawn in bands, by measured times. The way not in use is tried now and
+/// then, if compositing takes a large enough part of the time.
 class OverlapChoice {
  public:
   explicit OverlapChoice(Overlap wish) : wish_(wish) {}
 
   bool next() const;
-  /// `seconds` from the order to the image, of these `composite_seconds` after the slowest rank had drawn.
+  /// `seconds` from the order to the image, `composite_seconds` of them after the slowest rank had drawn.
   void took(bool overlapped, std::uint64_t samples, double seconds, double composite_seconds);
 
  private:
@@ -54,7 +53,7 @@ class OverlapChoice {
 
   Overlap wish_;
   Way apart_, overlapped_;
-  double composite_share_ = 0;  ///< of images that were drawn first
+  double composite_share_ = 0;  ///< of images that were not overlapped
 };
 
 }  // namespace understudy::compositor

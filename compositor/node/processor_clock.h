@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long the processors worked for this process: on a machine that ranks share, a rank's own work, whatever
-// the others do.
+// Processor time of this process: a rank's own work, even on a machine that ranks share.
 #pragma once
 
 #include <ctime>
@@ -9,7 +8,7 @@ namespace understudy::compositor {
 
 class ProcessorClock {
  public:
-  /// Of all threads, since this was made.
+  /// Of all threads, since construction.
   double ms() const { return now() - start_; }
 
  private:

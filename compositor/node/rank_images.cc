@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a rank draws its part of an image, and how the parts become one.
+// Draws a rank's part of an image, and composites the parts.
 #include <algorithm>
 #include <exception>
 #include <new>
@@ -24,7 +24,7 @@ void RankLoop::begin_request(const Order& order, Bytes payload, OwnOutcome& mine
   begin_image(order.client);
 }
 
-// Nothing that may fail on one rank alone stands between two calls in which all take part.
+// Nothing that may fail on one rank alone may stand between two collective calls.
 void RankLoop::begin_divided_image(std::uint64_t client, const std::function<volume::RenderRequest()>& decode,
                                    OwnOutcome& mine) {
   std::exception_ptr trouble;
@@ -64,7 +64,7 @@ void RankLoop::divide_image(std::uint64_t client) {
     footprints_[rank] = intersection(footprints_[rank], leaf_of(Rank(rank)));
 }
 
-// What all ranks know of the image before they draw it.
+// Computes what all ranks know about the image before they draw it.
 void RankLoop::begin_image(std::uint64_t client) {
   renderer_.begin_image();
   rendered_ = {client, request_.volume};
@@ -95,7 +95,7 @@ void RankLoop::draw(OwnOutcome& mine) {
   mine.control_bytes = opaque_tiles_->bytes();
 }
 
-// Whatever becomes of this rank's part, the others wait for its word on every band until all have given up.
+// Whatever happens to this rank's part, the others wait for its outcome of every band until all have given up.
 void RankLoop::draw_in_bands(OwnOutcome& mine) {
   const ImageBuffers::Memory& memory = memories_.of(task_.client);
   if (!mine.refused && 4 * whole_.pixels() > memory.floats)
@@ -111,7 +111,7 @@ void RankLoop::draw_in_bands(OwnOutcome& mine) {
           renderer_.render(task_.client, request_, counts, nullptr, leaf_ ? intersection(band, *leaf_) : band);
       counts.processor_ms = processors.ms();
       mine.footprint = bounding(mine.footprint, image.rect);
-      // The blocks are those of the whole image each time.
+      // Each band counts the blocks of the whole image again.
       counts.blocks -= mine.counts.blocks;
       counts.blocks_empty -= mine.counts.blocks_empty;
       mine.counts += counts;
@@ -124,8 +124,8 @@ void RankLoop::draw_in_bands(OwnOutcome& mine) {
   draw_and_composite(communicator_, compositing_, task_, memory, whole_, draw_band, travelled_);
 }
 
-// What this rank has drawn behind opaque tiles of others, before it heard of them, must not change footprints:
-// the image would depend on when control messages came.
+// What this rank has drawn behind opaque tiles of others, before it was told of them, must not change
+// footprints: the image would depend on when control messages arrive.
 void RankLoop::clear_hidden(std::vector<Outcome>& outcomes) {
   if (std::ranges::all_of(outcomes, [](const Outcome& outcome) { return outcome.control_messages == 0; }))
     return;
@@ -139,7 +139,7 @@ void RankLoop::clear_hidden(std::vector<Outcome>& outcomes) {
   for (std::size_t rank = 0; rank < outcomes.size(); ++rank) outcomes[rank].footprint = footprints[rank];
 }
 
-// All ranks have drawn: what they tell each other of it before it is composited.
+// All ranks have drawn: clears hidden pixels before compositing, and passes on the measurements of all ranks.
 void RankLoop::after_image(const OwnOutcome& mine, std::vector<Outcome>& outcomes) {
   clear_hidden(outcomes);
   loads_.drew(rendered_, mine.counts);
@@ -151,8 +151,8 @@ void RankLoop::after_image(const OwnOutcome& mine, std::vector<Outcome>& outcome
   rebalancer_->after_image(rendered_, work);
 }
 
-// The image goes to the application's memory; returns where its pixels lie in the window, or nothing, on all
-// ranks, when there is no room for them. Adds to the counts, on rank 0, what travelled.
+// Composites the image in the image buffer. Returns where its pixels lie in the window; null, on all ranks, if
+// the buffer is too small. On rank 0, adds what was sent to `counts`.
 std::optional<volume::Rect> RankLoop::composite(const std::vector<Outcome>& outcomes,
                                                 volume::FrameCounts& counts) {
   std::vector<volume::Rect> footprints;
@@ -167,7 +167,7 @@ std::optional<volume::Rect> RankLoop::composite(const std::vector<Outcome>& outc
   return compositing_.composite(task_, std::move(image_), footprints, memories_.of(task_.client), counts);
 }
 
-// The whole integrals, from the parts of all ranks.
+// Composes the whole integrals from the parts of all ranks.
 std::vector<volume::PixelIntegral> RankLoop::compose_integrals() {
   const auto ranks = std::size_t(communicator_.size());
   std::vector<std::uint64_t> known(ranks);
@@ -184,7 +184,7 @@ std::vector<volume::PixelIntegral> RankLoop::compose_integrals() {
   return composed_integrals(parts, integral_order_);
 }
 
-// Of the whole volume, from the parts of all ranks.
+// Returns the histogram of the whole volume, from the parts of all ranks.
 std::vector<std::uint64_t> RankLoop::sum_histograms() {
   const std::size_t bins = histogram_.size();
   std::vector<std::uint64_t> all(std::size_t(communicator_.size()) * bins);

@@ -158,7 +158,7 @@ void RankLoop::reply_with_image(Clients& clients, const Clients::Request& reques
   clients.reply(request, NodeMessage::rendered, encode(rendered));
 }
 
-// This rank's part of a request, and what became of the parts of all ranks.
+// Performs this rank's part of a request; returns the outcomes of all ranks.
 std::vector<Outcome> RankLoop::perform(const Order& order, Bytes payload) {
   OwnOutcome mine;
   const bool renders = order.type == NodeMessage::render;
@@ -211,7 +211,7 @@ void RankLoop::integrate(const Order& order, Bytes payload) {
   integrals_.resize(question.pixels.size());
 }
 
-// What became of the parts of all ranks. A volume that one rank could not take in is of no use on the others.
+// Exchanges the outcomes of all ranks. A volume that one rank could not receive is dropped on all.
 std::vector<Outcome> RankLoop::agree(const OwnOutcome& outcome) {
   Outcome mine = outcome;
   std::vector<Outcome> outcomes(std::size_t(communicator_.size()));

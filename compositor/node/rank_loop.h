@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One rank of a node group: rank 0 hears applications (clients.h) and orders, the others follow; all perform
-// the same requests, in the same order. Which file to read: rank_loop.cc orders and replies, rank_volumes.cc
-// takes in texels, rank_images.cc draws and composites.
+// One rank of a node group: rank 0 receives requests of applications (clients.h) and gives orders, the others
+// follow; all perform the same requests in the same order. Sources: rank_loop.cc gives orders and replies,
+// rank_volumes.cc receives texels, rank_images.cc draws and composites.
 #pragma once
 
 #include <array>
@@ -85,36 +85,36 @@ class RankLoop {
   std::vector<std::uint64_t> sum_histograms();
 
   Communicator& communicator_;
-  bool may_divide_images_;  ///< sort-first or hybrid, of some volumes
+  bool may_divide_images_;  ///< sort-first or hybrid, for some volumes
   RankRenderer renderer_;
   Loads loads_;
-  std::optional<Rebalancer> rebalancer_;  // where there is something to balance
+  std::optional<Rebalancer> rebalancer_;  // if there is something to balance
   ImageBuffers memories_;
   Compositing compositing_;
-  OverlapChoice overlap_;  // rank 0's word counts
-  /// By application, and there by place.
+  OverlapChoice overlap_;  // rank 0 decides
+  /// By application, then by place.
   std::map<std::uint64_t, std::array<volume::PreIntegrationTable, limits::max_kept_pre_integration_tables>>
       pre_integration_tables_;
-  std::vector<std::byte> payload_space_;  // the same size on all ranks but 0
+  std::vector<std::byte> payload_space_;  // of the same size on all ranks but 0
   std::size_t room_ = 0;                  // that size, known to rank 0 too
   Reason reason_{};                       // of the last refusal
-  std::vector<volume::TexelBox> shares_;  // of the texels in hand, this rank's
-  // Of the render request in hand.
+  std::vector<volume::TexelBox> shares_;  // this rank's, of the current texels
+  // The current render request.
   VolumeKey rendered_;
   volume::RenderRequest request_;
   ImageTask task_;
   std::vector<volume::Rect> footprints_;  // by rank: what it could show at most
-  volume::Rect whole_;                    // what all of them could
-  std::optional<volume::Rect> leaf_;      // of the image, where groups of ranks divide it: this group's
-  volume::FrameCounts travelled_;         // while the image was drawn
+  volume::Rect whole_;                    // what all ranks could
+  std::optional<volume::Rect> leaf_;      // this group's part of the image, if groups divide it
+  volume::FrameCounts travelled_;         // what was sent while the image was drawn
   volume::Image image_;
-  std::uint32_t images_ = 0;  // that were asked for, this one too
+  std::uint32_t images_ = 0;  // that were requested, this one included
   std::optional<OpaqueTiles> opaque_tiles_;
-  // Of the integrals in hand, this rank's parts; as many elements as pixels were asked for.
+  // This rank's parts of the current integrals; as many elements as pixels were asked for.
   std::vector<IntegralPart> integrals_;
   std::vector<Rank> integral_order_;
-  std::size_t integrated_ = 0;            // the first of them are known
-  std::vector<std::uint64_t> histogram_;  // in hand, of this rank's cells
+  std::size_t integrated_ = 0;            // how many of them are computed
+  std::vector<std::uint64_t> histogram_;  // the current one, of this rank's cells
 };
 
 inline bool is_load(const MessageType& type) {

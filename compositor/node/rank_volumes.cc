@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a rank takes in the texels of volumes.
+// Receives the texels of volumes.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -21,7 +21,7 @@ void RankLoop::forget_client(std::uint64_t client) {
   pre_integration_tables_.erase(client);
 }
 
-// What becomes of a volume as a whole; its texels come by texels() and by load().
+// Handles a volume as a whole; its texels are handled by texels() and load().
 void RankLoop::take_volume(NodeMessage message, const Order& order, Bytes payload, OwnOutcome& mine) {
   switch (message) {
     case NodeMessage::begin_volume: {
@@ -41,7 +41,7 @@ void RankLoop::take_volume(NodeMessage message, const Order& order, Bytes payloa
     }
     case NodeMessage::end_volume:
       mine.filling = VolumeKey{order.client, decode_id(payload)};
-      // A slice range's worth of memory is not needed again soon.
+      // Memory for a slice range is not needed again soon.
       payload_space_ = {};
       room_ = 0;
       renderer_.end(*mine.filling);
@@ -86,7 +86,7 @@ void RankLoop::load(LoadMessage message, const Order& order, Bytes payload, OwnO
   }
 }
 
-// Of ranks on one machine that show the same bricks, one keeps them for all.
+// One of several ranks on a machine that show the same bricks keeps them for all.
 void RankLoop::tell_where_bricks_are(VolumeKey key, OwnOutcome& mine) const {
   mine.process = ::getpid();
   mine.descriptor = renderer_.shared_descriptor(key);
@@ -99,10 +99,10 @@ void RankLoop::find_bricks(VolumeKey key, const std::vector<Outcome>& outcomes) 
   renderer_.find_bricks_at(key, fmt::format("/proc/{}/fd/{}", keeper.process, keeper.descriptor));
 }
 
-// Memory for that much of a payload. False, on all ranks, when one of them has none.
+// Allocates memory for a payload. False, on all ranks, if one of them has none.
 bool RankLoop::make_room(std::uint64_t bytes) {
-  // All ranks have seen the same orders, so they agree on when there must be more room; only then they must
-  // also agree on whether there is.
+  // All ranks have seen the same orders, so they agree on when more room is needed; only then must they also
+  // agree on whether there is any.
   if (bytes <= room_) return true;
   std::uint8_t fits = 1;
   try {
@@ -117,7 +117,7 @@ bool RankLoop::make_room(std::uint64_t bytes) {
   return true;
 }
 
-// Broadcasts the payload that is `here` on rank 0. False, on all ranks, when one of them has no room for it.
+// Broadcasts the payload, which is `here` on rank 0. False, on all ranks, if one of them has no room for it.
 bool RankLoop::receive_payload(const Order& order, std::span<std::byte> here) {
   if (!make_room(order.payload_bytes)) return false;
   communicator_.broadcast(
@@ -125,7 +125,7 @@ bool RankLoop::receive_payload(const Order& order, std::span<std::byte> here) {
   return true;
 }
 
-// Texels that are `here` on rank 0 go to the ranks that show them.
+// Sends texels, which are `here` on rank 0, to the ranks that show them.
 std::vector<Outcome> RankLoop::texels(const Order& order, std::span<volume::TexelBox> boxes, Bytes here) {
   communicator_.broadcast(0, std::as_writable_bytes(boxes));
   const VolumeKey key{order.client, order.volume};
@@ -134,7 +134,7 @@ std::vector<Outcome> RankLoop::texels(const Order& order, std::span<volume::Texe
   try {
     renderer_.check_texels(key, boxes, order.payload_bytes);
   } catch (const std::exception& error) {
-    mine.refuse(error.what());  // on all ranks
+    mine.refuse(error.what());  // likewise on all ranks
     return agree(mine);
   }
   if (!make_room(order.payload_bytes)) {

@@ -26,9 +26,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t most_cubes = std::size_t(1) << 15;  // 128 KiB of costs travel before an image
+constexpr std::size_t most_cubes = std::size_t(1) << 15;  // 128 KiB of costs are sent before an image
 
-/// The finest costs of which there are not too many.
+/// Returns the edge of the smallest cubes of which there are at most most_cubes.
 int cost_edge(const TexelBox& lattice) {
   for (int edge = BrickStore::block_cells;; edge *= 2) {
     std::size_t cubes = 1;
@@ -38,7 +38,7 @@ int cost_edge(const TexelBox& lattice) {
   }
 }
 
-/// The cubes in which blocks of these cells lie.
+/// Returns the cubes in which blocks of these cells lie.
 TexelBox cubes_touched(const BlockCosts& costs, const TexelBox& cells) {
   if (volume::is_empty(cells)) return {};
   TexelBox cubes;
@@ -81,25 +81,24 @@ Rebalancer::Appearance Rebalancer::appearance(const volume::RenderRequest& reque
   return {request.op, request.classification, request.surfaces, request.clip_planes, request.region};
 }
 
-/// Whether its partition may be another for this image. Ranks that even out measured times look at each; by
-/// expected costs alone it is cut for another appearance, and now and then, as the camera moves.
+/// Whether a volume's partition may change for this image. Balancing by measured times considers every image;
+/// cutting by expected costs alone considers another appearance, and every few images, as the camera moves.
 bool Rebalancer::is_due(const Volume& volume, const volume::RenderRequest& request) const {
   constexpr int images_between = 8;
   return settings_.balance != Balance::off || volume.images_since >= images_between ||
          volume.cut_for != appearance(request);
 }
 
-/// What of an image can be known, and fail, on one rank alone: its request, and what this rank expects it to
-/// cost.
+/// What one rank can determine alone, and may fail to: the request, and what this rank expects it to cost.
 struct Rebalancer::Expected {
   std::optional<volume::RenderRequest> request;
   Volume* volume = nullptr;
-  bool due = false;  ///< the following are empty otherwise
+  bool due = false;  ///< if not, the following are empty
   std::vector<TexelBox> boxes;
   std::optional<BlockCosts> costs;
   std::vector<float> mine, all;          ///< of the cubes that each rank's box touches
-  std::size_t most_here = 0;             ///< blocks, where the ranks have not told each other yet
-  std::vector<std::size_t> most_blocks;  ///< room for all ranks' answers
+  std::size_t most_here = 0;             ///< blocks, if the ranks have not exchanged these yet
+  std::vector<std::size_t> most_blocks;  ///< space for the values of all ranks
 };
 
 Rebalancer::Volume Rebalancer::new_volume() const {
@@ -121,7 +120,7 @@ void Rebalancer::begin(VolumeKey key) {
   const auto known = volumes_.find(key);
   if (known == volumes_.end()) return;
   Volume volume = new_volume();
-  // Cutting goes by all ranks' samples together, whatever their boxes were.
+  // Cutting uses the samples of all ranks together, whatever their boxes were.
   if (method_ == volume::PartitionMethod::cost) volume.work = std::move(known->second.work);
   volume.ms_per_block = known->second.ms_per_block;
   known->second = std::move(volume);
@@ -133,7 +132,7 @@ void Rebalancer::expect(std::uint64_t client, const std::function<volume::Render
   const BrickStore& bricks = renderer_.bricks(client, request);
   const TexelBox lattice = bricks.lattice().box();
   expected.volume = &volume_of({client, request.volume});
-  // A part is shown once, and goes.
+  // A part of a volume is shown once, and then replaced.
   expected.due = !bricks.description().part && is_due(*expected.volume, request);
   if (!expected.due) return;
   expected.boxes = volume::boxes(renderer_.partition(client, request), bricks.description());
@@ -154,7 +153,7 @@ void Rebalancer::expect(std::uint64_t client, const std::function<volume::Render
       [&](const BlockPlace& cube) { expected.mine[next++] = float(costs.values()[costs.index(cube)]); });
 }
 
-/// All ranks tell each other what they expect: `costs` are then those of the whole image.
+/// Exchanges the ranks' expectations: `costs` then holds those of the whole image.
 void Rebalancer::gather_costs(Expected& expected) {
   if (expected.volume->most_blocks.empty()) {
     communicator_.gather_to_all(bytes_of(expected.most_here),
@@ -174,7 +173,7 @@ void Rebalancer::gather_costs(Expected& expected) {
 
 volume::RenderRequest Rebalancer::before_image(std::uint64_t client,
                                                const std::function<volume::RenderRequest()>& decode) {
-  // Nothing that may fail on one rank alone stands between two calls in which all take part.
+  // Nothing that may fail on one rank alone may stand between two collective calls.
   Expected expected;
   std::exception_ptr trouble;
   try {
@@ -195,7 +194,7 @@ volume::RenderRequest Rebalancer::before_image(std::uint64_t client,
     const Partition now = renderer_.partition(client, request);
     const Partition next = volume.balancer->decide({now, expected.costs->lattice(), volume.work,
                                                     *expected.costs, volume.ms_per_block, volume.most_blocks});
-    volume.work.clear();  // learned from
+    volume.work.clear();  // used once
     volume.images_since = 0;
     if (settings_.balance == Balance::off) volume.cut_for = appearance(request);
     if (next != now) move({client, request.volume}, volume, request, next);
@@ -211,10 +210,10 @@ volume::RenderRequest Rebalancer::before_image(std::uint64_t client,
   return std::move(*expected.request);
 }
 
-// What this rank holds, and what more it has memory for if all blocks take as much as they can: those of one
-// value take next to none.
+// Returns how many blocks this rank can hold: those that it holds, and those for which it has memory if all
+// blocks have their full size (blocks of one value take next to none).
 std::size_t Rebalancer::most_blocks_here(const BrickStore& bricks) const {
-  // A block that comes is in a message, unpacked, and in the store for a while.
+  // A block that arrives is in a message, unpacked, and in the store for a while.
   constexpr std::size_t copies = 3;
   const std::size_t block_bytes = BrickStore::block_texels * bytes_per_texel(bricks.description().type);
   return bricks.blocks() + settings_.memory_left() / (copies * block_bytes);
@@ -244,9 +243,9 @@ void Rebalancer::move(VolumeKey key, Volume& volume, const volume::RenderRequest
        difference(blocks_kept(description, before[me]), blocks_kept(description, after[me])))
     for_each_place(given, [&](const BlockPlace& place) { volume.given_away.put(place, bricks.packed(place)); });
   renderer_.divide(key, next, [&](const BlockPlace& place) { return std::move(received.at(place)); });
-  volume.most_blocks.clear();  // asked for anew
+  volume.most_blocks.clear();  // to be exchanged again
   figures.ms = ms_since(start);
-  // The slowest rank's, so that all reckon with the same.
+  // The slowest rank's time, so that all ranks use the same.
   std::vector<double> times(std::size_t(communicator_.size()));
   communicator_.gather_to_all(std::as_bytes(std::span(&figures.ms, 1)),
                               std::as_writable_bytes(std::span(times)));
@@ -258,7 +257,7 @@ void Rebalancer::move(VolumeKey key, Volume& volume, const volume::RenderRequest
   settings_.moved(figures);
 }
 
-/// Blocks on their way between this rank and each other one.
+/// Blocks to be sent between this rank and each other one.
 struct Rebalancer::Traffic {
   explicit Traffic(std::size_t ranks)
       : to(ranks),
@@ -277,8 +276,8 @@ struct Rebalancer::Traffic {
   std::vector<std::uint64_t> sizes, announced;             ///< of these, in bytes
 };
 
-// Every rank tells those that have blocks for it which of them it does not keep from earlier; these say how
-// many bytes they are, and send them.
+// Every rank tells those that have blocks for it which of them it needs, as its cache may hold some. The
+// senders announce the number of bytes, and send them.
 void Rebalancer::send_blocks(Volume& volume, const BrickStore& bricks, std::span<const TexelBox> before,
                              std::span<const TexelBox> after,
                              std::map<BlockPlace, std::vector<std::byte>>& received, MoveFigures& figures) {
@@ -363,13 +362,13 @@ void Rebalancer::texels_changed(VolumeKey key, const volume::VolumeDescription& 
   const auto found = volumes_.find(key);
   if (found == volumes_.end()) return;
   BlockCache& cache = found->second.given_away;
-  // Where an axis repeats, a texel shows at both of its ends.
+  // If an axis repeats, a texel is shown at both of its ends.
   if (std::ranges::count(description.wrap, volume::Wrap::repeat) > 0) return cache.clear();
   const TexelBox lattice = volume::cell_lattice(description).box();
   for (const TexelBox& box : boxes) {
     TexelBox blocks;
     for (std::size_t k = 0; k < 3; ++k) {
-      // A block shows the texels on both of its faces.
+      // A block holds the texels on both of its faces.
       blocks.low[k] = (box.low[k] - lattice.low[k] - 1) / BrickStore::block_cells;
       blocks.high[k] = (box.high[k] - 1 - lattice.low[k]) / BrickStore::block_cells + 1;
     }

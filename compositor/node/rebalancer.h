@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keeps the ranks of a node group equally busy: before an image all ranks decide, each for itself and all
-// alike, where the planes of its volume go, and send each other the blocks that change hands.
+// alike, where the planes of its volume go, and send each other the blocks that change ranks.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +20,12 @@
 
 namespace understudy::compositor {
 
-/// What a move of planes was, on this rank.
+/// Figures of one move of planes, on this rank.
 struct MoveFigures {
   volume::VolumeId volume = 0;
   int planes = 0;
   std::size_t blocks_received = 0;
-  std::size_t blocks_from_cache = 0;  ///< that had been given away and came back
+  std::size_t blocks_from_cache = 0;  ///< given away before, and still in the cache
   std::size_t bytes_received = 0;
   double ms = 0;
   double deviation = 0;  ///< (max - min) / mean of the ranks' times, in the image before
@@ -35,37 +35,37 @@ struct BalanceSettings {
   Balance balance = Balance::off;
   /// Called on every rank after each of its moves.
   std::function<void(const MoveFigures&)> moved = [](const MoveFigures&) {};
-  /// Of blocks that were given away, kept by each rank for each volume.
+  /// Bytes of blocks given away that each rank keeps for each volume.
   std::size_t cache_bytes = std::size_t(64) << 20;
-  /// Bytes that this rank may still fill, asked before a volume's first image and after each move.
+  /// Returns the bytes that this rank may still fill; called before a volume's first image and after each move.
   std::function<std::size_t()> memory_left = [] { return std::numeric_limits<std::size_t>::max(); };
 };
 
 class Rebalancer {
  public:
-  /// Of volumes that all ranks together hold one copy of.
+  /// For volumes of which all ranks together hold one copy.
   Rebalancer(Communicator& communicator, RankRenderer& renderer, BalanceSettings settings,
              volume::PartitionMethod method = volume::PartitionMethod::blocks);
 
-  /// Collective, before an image is rendered. Returns what `decode` does; what it throws, or what is wrong
-  /// with the request here, is thrown once all ranks have been told, and then nothing has moved anywhere. What
-  /// fails later, on a rank that others wait for (memory), ends the group.
+  /// Collective, before an image is rendered. Returns what `decode` returns. Throws what `decode` throws, or
+  /// what is wrong with the request on this rank, once all ranks have been told; nothing has moved anywhere
+  /// then. What fails later, on a rank that others wait for (memory), ends the group.
   volume::RenderRequest before_image(std::uint64_t client,
                                      const std::function<volume::RenderRequest()>& decode);
-  /// What all ranks did for it.
+  /// Takes what all ranks did for the image.
   void after_image(VolumeKey key, std::span<const RankWork> work);
 
-  /// Other texels have come for these boxes of a volume that is complete.
+  /// To be called when texels of these boxes have changed in a complete volume.
   void texels_changed(VolumeKey key, const volume::VolumeDescription& description,
                       std::span<const volume::TexelBox> boxes);
-  /// A volume begins anew. What images and moves of the one before took stays known: an application may upload
-  /// it whole for every frame.
+  /// Begins a volume anew. Keeps the times measured for its predecessor's images and moves: an application may
+  /// upload the whole volume for every frame.
   void begin(VolumeKey key);
   void forget(VolumeKey key) { volumes_.erase(key); }
   void forget_client(std::uint64_t client);
 
  private:
-  /// The fields of a request that change the costs of blocks, without the camera.
+  /// The fields of a request that change the costs of blocks, except the camera.
   struct Appearance {
     volume::Operator op = volume::Operator::over;
     volume::Classification classification;
@@ -80,8 +80,8 @@ class Rebalancer {
     BlockCache given_away;
     std::vector<RankWork> work;
     double ms_per_block = 0;
-    std::vector<std::size_t> most_blocks;  ///< by rank; empty: to be asked for
-    std::optional<Appearance> cut_for;     ///< what was shown when its partition was last looked at
+    std::vector<std::size_t> most_blocks;  ///< by rank; empty: not known yet
+    std::optional<Appearance> cut_for;     ///< what was shown when the partition was last decided
     int images_since = 0;
   };
 

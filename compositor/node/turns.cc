@@ -16,7 +16,7 @@ void Turns::served(std::uint64_t client, Deadline begun, Deadline done, bool ref
     const Duration its_rest = std::max(other.rests_until - done, Duration());
     rest += std::min(std::max(counted - its_rest, Duration()), other.time_for_it);
   }
-  // Of many that ask for next to nothing the nodes would be idle.
+  // Without this limit many clients that ask for next to nothing would leave the nodes idle.
   const Duration by_others = used_ - clients_[client].used_then;
   rest = std::min(rest, std::max(counted, limits::rest_for_use * by_others));
   used_ += took;

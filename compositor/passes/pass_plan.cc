@@ -16,8 +16,8 @@ using volume::VolumeDescription;
 
 namespace {
 
-/// What a rank takes while it reads `box` slice by slice: scalars, the texels that they become, and what the
-/// file needs.
+/// Bytes that a rank needs while it reads `box` by slice ranges: the scalars, the texels made from them, and
+/// what the file itself needs.
 std::uint64_t bytes_to_read(const VolumeDescription& volume, const volume::VolumeFile& file, TexelBox box) {
   const std::size_t scalar = volume::bytes_per_scalar(file.description().type);
   const std::size_t texel = volume::bytes_per_texel(volume.type);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Into how many parts a volume must be divided so that ranks can show it one part after the other within a
-// limit of memory.
+// Computes into how many parts a volume must be divided so that ranks can show one part after the other within
+// a memory limit.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,15 @@ struct VolumeDescription;
 
 namespace understudy::compositor {
 
-/// Most parts that a volume is shown in.
+/// The largest number of parts that a volume is shown in.
 constexpr int max_passes = 4096;
 
-/// What `ranks` that divide the volume's shown cells take of memory at most, each, while they load and show it:
-/// its bricks, and what reading a few slices of the file takes.
+/// Returns the most memory that one of `ranks` ranks, which divide the volume's shown cells, needs while it
+/// loads and shows its share: its bricks, and what reading a few slices of the file takes.
 std::uint64_t bytes_of_rank(const volume::VolumeDescription& volume, const volume::VolumeFile& file, int ranks);
 
-/// The fewest parts of which no rank takes more than `bytes`, but for an eighth of them. None: not even
-/// max_passes are enough. Throws std::invalid_argument as volume::by_blocks() does.
+/// Divides the volume into the fewest parts, to within an eighth, of which no rank needs more than `bytes`.
+/// Null: not even max_passes parts are enough. Throws std::invalid_argument as volume::by_blocks() does.
 std::optional<volume::Partition> passes_within(const volume::VolumeDescription& volume,
                                                const volume::VolumeFile& file, int ranks, std::uint64_t bytes);
 

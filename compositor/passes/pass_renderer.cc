@@ -31,7 +31,7 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// What ranks have of several parts, one after the other; of a part that was loaded before, what it took.
+/// Adds the figures of one part, by rank. `again`: it was loaded before, and its NaNs are counted already.
 void add_part(std::vector<RankLoad>& all, std::span<const RankLoad> part, bool again) {
   all.resize(part.size());
   for (std::size_t i = 0; i < part.size(); ++i) {
@@ -52,8 +52,8 @@ void add_part(std::vector<RankLoad>& all, std::span<const RankLoad> part, bool a
   }
 }
 
-/// The texels of values between two, none where low > high: in units of the texel type, as rounding may leave
-/// them.
+/// Returns the texels for a range of values, in units of the texel type and widened to whole units; empty, as
+/// `values` is, if low > high.
 BrickStore::Range texels_between(const volume::TexelMapping& mapping, const std::array<double, 2>& values) {
   if (values[0] > values[1]) return {1, 0};
   const double unit = volume::largest_texel(mapping.type);
@@ -128,9 +128,9 @@ bool PassRenderer::may_show(const RenderRequest& request, int part) const {
   BrickStore::Range texels = texels_between(mapping, values_[std::size_t(part)]);
   const volume::ScalarType type = file_.description().type;
   const bool floats = type == volume::ScalarType::f32 || type == volume::ScalarType::f64;
-  if (floats && mapping.type != volume::TexelType::f32)  // not-a-numbers become the least integer
+  if (floats && mapping.type != volume::TexelType::f32)  // NaN becomes the least integer
     texels = {0, texels.low <= texels.high ? texels.high : 0};
-  // The least value of a sample is shown even where it is 0.
+  // Under `min` any sample shows, even one of value 0.
   if (request.op == volume::Operator::min) return texels.low <= texels.high;
   const volume::TransferTable table(*function, mapping.type, volume::neutral_value(request.op));
   const double unit = volume::largest_texel(mapping.type);

@@ -16,7 +16,7 @@ namespace {
 
 /// Smaller images are not worth a JPEG's tables.
 constexpr std::size_t least_jpeg_pixels = 4096;
-constexpr double newest_packing_counts = 0.25;  ///< of what is known of packing then
+constexpr double newest_packing_counts = 0.25;  ///< weight of the newest measurement
 
 struct ImageHead {
   std::uint32_t reply_bytes = 0;  ///< of the message as the nodes made it
@@ -61,7 +61,7 @@ void decode_jpegs(std::span<const std::byte> from, int width, std::span<float> t
     to[i] = float(std::to_integer<int>(i % 4 == 3 ? alphas[i / 4] : colours[i])) / 255;
 }
 
-/// The application's end and the server's keep what they were given for the next images.
+/// Both ends keep the memory for the next images, without its descriptor.
 std::shared_ptr<ImageBuffer> shared(ImageBuffer memory) {
   memory.close_descriptor();
   return std::make_shared<ImageBuffer>(std::move(memory));
@@ -191,7 +191,7 @@ void NodesRelay::carry_out(Message message) {
                    coded_);
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
       if (head.coding == ImageCoding::packed && head.layout == Layout::rgba32f) {
-        // It is unpacked in about the same time.
+        // Unpacking takes about as long.
         packed_seconds_per_byte_ +=
             newest_packing_counts * (2 * seconds / double(image.size()) - packed_seconds_per_byte_);
         packed_ratio_ += newest_packing_counts * (double(coded_.size()) / double(image.size()) - packed_ratio_);

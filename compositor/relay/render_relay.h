@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Relays between applications and node groups. The memory in which an image is left has one half at each end:
-// the application's own, and one that the server's relay makes for the nodes. An image travels as numbers
-// (packed as between nodes where that is faster, or narrower: ConnectionRequest::pixels), or as a JPEG image
-// while requests differ.
+// Relays between applications and node groups. The image buffer has one half at each end: the application's
+// own, and one that the server's relay makes for the nodes. An image is sent as numbers (packed as between
+// nodes where that is faster, or narrower: ConnectionRequest::pixels), or as JPEG while requests differ.
 //
-// Behind the payload of a `rendered` message stand how its image is written (ImageCoding) and its bytes.
+// After the payload of a `rendered` message come the coding (ImageCoding) and the bytes of its image.
 #pragma once
 
 #include <memory>
@@ -15,13 +14,13 @@
 namespace understudy::compositor {
 
 enum class ImageCoding : std::uint8_t {
-  floats,  ///< as they are
+  floats,  ///< unchanged
   packed,  ///< exchange/pixel_numbers.h
-  jpeg,    ///< relay/jpeg.h: colours, and alpha as another image
+  jpeg,    ///< relay/jpeg.h: colours, and alpha as a second image
   last = jpeg
 };
 
-/// Beside the application.
+/// The relay beside the application.
 class ApplicationRelay : public Relay {
  public:
   using Relay::Relay;
@@ -32,11 +31,11 @@ class ApplicationRelay : public Relay {
   void carry_back(Message message) override;
 
  private:
-  /// An image's memory, which the one direction learns of and the other writes to.
+  /// The image buffer, which one direction sets and the other writes to.
   std::atomic<std::shared_ptr<ImageBuffer>> memory_;
 };
 
-/// Beside the nodes.
+/// The relay beside the nodes.
 class NodesRelay : public Relay {
  public:
   NodesRelay(Connection& here, TcpConnection& tcp, const ConnectionRequest& connection_request)
@@ -53,20 +52,20 @@ class NodesRelay : public Relay {
   ConnectionRequest connection_request_;
   std::atomic<std::shared_ptr<ImageBuffer>> memory_;
   std::vector<std::byte> last_request_;
-  std::atomic<bool> repeats_ = false;  ///< the last request is the one before: its image is sent without loss
+  std::atomic<bool> repeats_ = false;  ///< the last request equals the one before: send without loss
   std::vector<std::byte> coded_;
   double packed_seconds_per_byte_ = 0.5e-9;
   double packed_ratio_ = 0.5;
 };
 
-/// A `rendered` message as it travels: leaves its image at the beginning of `memory`, and returns the part of
-/// `payload` that the nodes wrote. Throws MalformedMessage.
+/// Reads a `rendered` message as it is sent: writes its image to the beginning of `memory`, and returns the
+/// part of `payload` that the nodes wrote. Throws MalformedMessage.
 Bytes take_image(Bytes payload, std::span<float> memory);
 
-/// Writes `pixels`, RGBA and premultiplied, in the layout.
+/// Appends `pixels`, RGBA and premultiplied, to `to`; packed in `layout`.
 void encode_image(std::span<const float> pixels, int width, ImageCoding coding, Layout layout, int jpeg_quality,
                   std::vector<std::byte>& to);
-/// The other way. Throws MalformedMessage where `from` holds another number of pixels.
+/// The inverse. Throws MalformedMessage if `from` holds another number of pixels.
 void decode_image(std::span<const std::byte> from, ImageCoding coding, Layout layout, int width,
                   std::span<float> to);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How lines of the nodes' log begin that say who casts the rays, and why.
+// The beginning of lines in the nodes' log that state which backend casts the rays, and why.
 #pragma once
 
 namespace understudy::compositor {

@@ -19,11 +19,11 @@ void send_away(Connection& client, const std::string& reason) {
   try {
     client.send(LauncherMessage::refused, 0, encode_text(reason), Connection::now_or_never());
   } catch (const ConnectionLost&) {
-    // It is leaving anyway.
+    // The client is leaving anyway.
   }
 }
 
-// Whether something arrived, or ended, on a connection that should be quiet.
+// Whether something arrived on a connection that should be quiet, or the connection ended.
 bool stirs(const Connection& connection) {
   return wait_until_ready(connection.fd(), POLLIN | POLLRDHUP, Connection::now_or_never());
 }
@@ -48,9 +48,9 @@ void Broker::poll_fds(std::vector<pollfd>& fds) const {
 void Broker::step(std::chrono::milliseconds timeout) {
   std::vector<pollfd> fds;
   poll_fds(fds);
-  // Errors and signals: the handlers below find out by themselves what there is to do.
+  // Errors and signals are ignored: the handlers below find out by themselves what there is to do.
   ::poll(fds.data(), fds.size(), int(timeout.count()));
-  hear_nodes();  // first: a group that died must not stand in the way of its successor
+  hear_nodes();  // first: a dead group must not keep its successor out
   accept_all(group_);
   accept_all(applications_);
   hear_newcomers();
@@ -63,15 +63,14 @@ void Broker::accept_all(const Entrance& entrance) {
     FileDescriptor peer = accept_from(entrance.listener);
     if (!peer) {
       if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED) return;
-      // Out of descriptors or memory: the caller of connect() stays in the queue, and asking again at once
-      // would spin.
+      // Out of descriptors or memory: the connection stays in the queue, and retrying at once would spin.
       say_(fmt::format("cannot accept a connection at '{}': {}; trying again in a second", entrance.path(),
                        std::strerror(errno)));
       accept_again_ = Clock::now() + std::chrono::seconds(1);
       return;
     }
     Connection connection(std::move(peer), service_protocols, limits::max_hello_bytes);
-    // However many applications there are, nodes come in.
+    // Nodes are accepted however many applications there are.
     if (&entrance == &applications_ && newcomers_.size() + waiting_.size() >= limits::max_clients) {
       send_away(connection, fmt::format("{} applications already wait for a node group", limits::max_clients));
       continue;
@@ -92,7 +91,7 @@ void Broker::hear_newcomers() {
       else
         say_(fmt::format("dropped a connection at '{}' that did not say what it is", entrance));
     } catch (const ConnectionLost& error) {
-      // Who connects and leaves without a word only wanted to know whether somebody is here.
+      // A peer that connects and leaves without a message only checked whether somebody listens.
       if (peer.connection.unfinished())
         say_(fmt::format("dropped a connection at '{}': {}", entrance, error.what()));
     } catch (const std::runtime_error& error) {
@@ -125,14 +124,14 @@ void Broker::accepted(Peer peer, const Message& hello) {
 }
 
 void Broker::hear_waiting() {
-  // An application waits for its acceptance without a word; when it stirs it has gone, or speaks out of turn.
+  // A waiting application sends nothing until it is accepted: otherwise it has gone, or violates the protocol.
   std::erase_if(waiting_, [](const Connection& client) { return stirs(client); });
 }
 
 void Broker::hear_nodes() {
   if (nodes_.empty()) return;
   try {
-    // All that is there, first: this process may have been held up itself.
+    // Reads all messages first: this process may have been delayed itself.
     while (const std::optional<Message> message = nodes_.front().receive_some()) {
       if (message->type != LauncherMessage::alive) return lose_nodes("rank 0 spoke out of turn");
       nodes_heard_at_ = Clock::now();
@@ -157,7 +156,7 @@ void Broker::hand_over() {
       nodes_.front().send(LauncherMessage::client, 0, Bytes{}, Connection::now_or_never(),
                           waiting_.front().fd());
     } catch (const ConnectionLost&) {
-      // Busy: the next step tries again, and finds out if it has gone.
+      // Busy: the next step tries again, and finds out whether the group has gone.
       return;
     }
     waiting_.erase(waiting_.begin());

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The launcher's side of the render service, where a node group and the applications meet. Each has a socket of
-// its own: an application's connection may be in the hands of a process that must not pose as the nodes.
+// its own, so that a process with an application's connection cannot pose as the nodes.
 //
-// It outlives node groups, because MPI ends a whole job when one rank dies. Applications that come while no
-// group is there are held; when rank 0 of a group has said hello, their connections are handed to it
-// (SCM_RIGHTS), and from then on application and rank 0 talk without the launcher. What the launcher hears of
-// rank 0 then is that it lives, once a second; a group that no longer says so, or that cannot get on with a
-// request that nobody waits for any longer, hangs and is given up.
+// The broker outlives node groups, because MPI ends a whole job when one rank dies. Applications that connect
+// while there is no group are held. When rank 0 of a group has sent its hello, it gets their connections
+// (SCM_RIGHTS); from then on application and rank 0 communicate without the launcher. Rank 0 then sends the
+// launcher a message once a second. A group that stops doing so, or that does not finish a request whose
+// application has gone, is considered hung and is given up.
 #pragma once
 
 #include <poll.h>
@@ -21,7 +21,7 @@
 
 namespace understudy::compositor {
 
-/// How long the launcher waits before it gives a peer up.
+/// How long the launcher waits before it gives up a peer.
 struct BrokerPatience {
   std::chrono::milliseconds hello = limits::hello_patience;
   std::chrono::milliseconds silence = limits::silence_patience;
@@ -37,27 +37,28 @@ class Broker {
  public:
   using Say = std::function<void(const std::string&)>;
 
-  /// Listens at both paths (mode 0600). `say` gets one line about everything that goes wrong later; by default
-  /// it is written to stderr. Throws std::runtime_error when a path is taken or cannot be.
+  /// Listens at both paths (mode 0600). `say` gets one line for everything that goes wrong later; by default
+  /// the line is logged. Throws std::runtime_error if a path is taken or cannot be used.
   explicit Broker(const BrokerSockets& sockets, Say say = {}, const BrokerPatience& patience = {});
   Broker(const Broker&) = delete;
   Broker& operator=(const Broker&) = delete;
 
   /// Adds the descriptors to wait for, for a caller with a poll loop of its own, which then calls step(0).
   void poll_fds(std::vector<pollfd>& fds) const;
-  /// Waits at most `timeout` for something to happen and handles all that has happened.
+  /// Waits at most `timeout` for events and handles all that have happened.
   void step(std::chrono::milliseconds timeout);
 
   bool node_group_ready() const { return !nodes_.empty(); }
   /// How many ranks the group has; 0 without a group.
   int ranks() const { return nodes_.empty() ? 0 : ranks_; }
-  /// A node group was there and is gone, or hangs: start another. False again once that one has said hello.
+  /// Whether a node group has died or hangs, and another must be started. False again after the next group's
+  /// hello.
   bool lost() const { return lost_; }
-  /// Asks the group to end: its applications lose their connections. That is no loss in the sense of lost().
+  /// Asks the group to end: its applications lose their connections. lost() does not change.
   void dismiss_node_group();
 
-  /// No group will come (MPI is missing, it keeps dying): all that wait and will come are sent away with
-  /// `reason`, until a group says hello after all.
+  /// To be called when no group will come (MPI is missing, it keeps dying): refuses all waiting and later
+  /// applications with `reason`, until a group sends its hello after all.
   void turn_away(const std::string& reason);
 
   std::size_t clients_waiting() const { return waiting_.size(); }
@@ -74,7 +75,7 @@ class Broker {
   struct Peer {
     Connection connection;
     Deadline hello_until;
-    const Entrance* entrance;  ///< that it came by
+    const Entrance* entrance;  ///< at which it connected
   };
 
   void accept_all(const Entrance& entrance);
@@ -90,7 +91,7 @@ class Broker {
   Entrance applications_;
   Entrance group_;
   Deadline accept_again_{};
-  std::vector<Peer> newcomers_;      // have not said hello
+  std::vector<Peer> newcomers_;      // have not sent a hello yet
   std::vector<Connection> waiting_;  // applications
   std::vector<Connection> nodes_;    // the group: one or none
   Deadline nodes_heard_at_{};

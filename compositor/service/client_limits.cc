@@ -18,13 +18,13 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t no_limit = ~std::uint64_t(0);
 
-/// What such a file says; groups without a limit say "max", or a number beyond all memory.
+/// Returns the limit in such a file; groups without a limit have "max", or a number above all memory.
 std::uint64_t limit_in(const fs::path& file) {
   std::uint64_t bytes = 0;
   return std::ifstream(file) >> bytes ? bytes : no_limit;
 }
 
-/// Of the group and of those that it is in.
+/// Returns the lowest limit of the group and its ancestors.
 std::uint64_t limit_of(const fs::path& root, fs::path group, const char* file) {
   std::uint64_t least = limit_in(root / file);
   for (group = group.relative_path(); !group.empty(); group = group.parent_path())
@@ -32,7 +32,7 @@ std::uint64_t limit_of(const fs::path& root, fs::path group, const char* file) {
   return least;
 }
 
-/// /proc/self/cgroup has lines as "0::/user.slice" (version 2) and "9:memory:/user.slice" (version 1).
+/// Lines of /proc/self/cgroup look like "0::/user.slice" (version 2) and "9:memory:/user.slice" (version 1).
 std::uint64_t control_group_limit() {
   const fs::path root = "/sys/fs/cgroup";
   std::uint64_t least = no_limit;
@@ -49,7 +49,7 @@ std::uint64_t control_group_limit() {
 }  // namespace
 
 std::uint64_t usable_memory() {
-  // Once: later this process may be one that opens no files.
+  // Only once: later this process may not be allowed to open files.
   static const std::uint64_t found = [] {
     const auto physical = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGESIZE));
     return std::min(physical, control_group_limit());

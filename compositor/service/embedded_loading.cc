@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One rank in this process that reads its files itself.
+// One rank in this process, which reads its files itself.
 #include <array>
 
 #include "compositor/rendered.h"

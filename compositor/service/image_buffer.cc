@@ -35,7 +35,7 @@ ImageBuffer::~ImageBuffer() {
 
 ImageBuffer ImageBuffer::create(std::uint64_t bytes) {
   FileDescriptor memory(::memfd_create("understudy image", MFD_CLOEXEC | MFD_ALLOW_SEALING));
-  // fallocate() and not ftruncate(): memory that is missing must fail here and not at the first write.
+  // fallocate(), not ftruncate(): lack of memory must fail here, not at the first write.
   if (!memory || ::fallocate(memory.get(), 0, 0, off_t(bytes)) != 0 ||
       ::fcntl(memory.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
     throw std::runtime_error(

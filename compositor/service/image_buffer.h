@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The memory in which a node group leaves its image for the application: an anonymous file that the
-// application makes and passes along its connection. It is sealed against shrinking, so that neither side can
-// pull it away under the other (which would end in SIGBUS); a larger image needs a new one.
+// The memory in which a node group leaves its image for the application: an anonymous file that the application
+// makes and passes along its connection. It is sealed against shrinking, so that neither side can truncate it
+// while the other uses it (which would end in SIGBUS); a larger image needs a new one.
 #pragma once
 
 #include <cstddef>
@@ -19,16 +19,15 @@ class ImageBuffer {
   ImageBuffer& operator=(ImageBuffer&& other) noexcept;
   ~ImageBuffer();
 
-  /// The application's side: `bytes` of memory that are really there. Throws std::runtime_error.
+  /// The application's side: allocates `bytes` of memory. Throws std::runtime_error.
   static ImageBuffer create(std::uint64_t bytes);
-  /// The node's side: believes the descriptor only when it is sealed and as large as promised. Throws
-  /// std::runtime_error.
+  /// The node's side: maps the memory if it is sealed and as large as promised. Throws std::runtime_error.
   static ImageBuffer map(FileDescriptor memory, std::uint64_t bytes);
 
   std::span<float> floats() const { return {data_, bytes_ / sizeof(float)}; }
   std::size_t bytes() const { return bytes_; }
   int fd() const { return memory_.get(); }
-  /// The mapping stays.
+  /// The memory stays mapped.
   void close_descriptor() { memory_.reset(); }
 
  private:

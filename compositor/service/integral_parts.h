@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Integrals of pixels on their way from the ranks, each of which knows its own cells, to the application; and
-// the messages they travel in.
+// Composes integrals of whole rays from the parts of the ranks, each of which has only its own cells; and the
+// messages for them.
 #pragma once
 
 #include <array>
@@ -13,13 +13,13 @@
 
 namespace understudy::compositor {
 
-/// What one rank's cells show of a pixel, by themselves. Opacity as optical depth: of fog no digit is lost.
+/// What one rank's cells alone show of a pixel. Opacity is optical depth, which keeps all digits of thin fog.
 struct IntegralPart {
   std::array<double, 3> colour{};
   double optical_depth = 0;
 };
 
-/// The pixels that all ranks came to: `parts` by rank, composed in `visibility_order`, front first.
+/// Composes the pixels that all ranks have computed: `parts` by rank, in `visibility_order`, front first.
 std::vector<volume::PixelIntegral> composed_integrals(std::span<const std::vector<IntegralPart>> parts,
                                                       std::span<const int> visibility_order);
 
@@ -33,7 +33,7 @@ std::vector<std::byte> encode(const volume::RenderRequest& request, std::span<co
                               double most_ms);
 std::vector<std::byte> encode(std::span<const volume::PixelIntegral> integrals);
 
-// Both throw MalformedMessage. What comes back keeps within limits.h.
+// Both throw MalformedMessage. Decoded values are within limits.h.
 IntegralQuestion decode_integral_question(std::span<const std::byte> payload);
 std::vector<volume::PixelIntegral> decode_integrals(std::span<const std::byte> payload);
 

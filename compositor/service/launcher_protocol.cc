@@ -44,7 +44,7 @@ std::string decode_text(std::span<const std::byte> payload) {
   const auto bytes = in.run("text", limits::max_text_bytes);
   in.end();
   std::string text(bytes.size(), ' ');
-  // A peer's text ends up on a terminal: one line, nothing that steers it.
+  // A peer's text is written to a terminal: one line, without control characters.
   std::ranges::transform(bytes, text.begin(), [](std::byte b) {
     const char c = char(b);
     return c >= 0 && c < ' ' ? ' ' : c;

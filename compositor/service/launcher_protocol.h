@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What applications and node groups say to the launcher, which hands applications over to the nodes, and how an
-// application is accepted or refused, there and by GL servers.
+// Messages from applications and node groups to the launcher, which passes applications on to the nodes; and
+// how an application is accepted or refused, there and by GL servers.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ enum class LauncherMessage : std::uint16_t {
   client,       ///< attached: the connection of an application
   // replies
   accepted,  ///< payload: Hello
-  refused,   ///< payload: the reason; to any later request, too
+  refused,   ///< payload: the reason; also the reply to any later request
   // from rank 0 to the launcher, once a second
   alive,  ///< payload: Alive
   last = alive
@@ -33,16 +33,16 @@ struct Hello {
   int ranks = 0;
 };
 
-/// How long rank 0 has been at a request whose application has gone; limits::max_unwanted_ms if longer.
+/// How long rank 0 has worked on a request whose application has gone; at most limits::max_unwanted_ms.
 struct Alive {
   int unwanted_ms = 0;
 };
 
 std::vector<std::byte> encode(const Hello& hello);
 std::vector<std::byte> encode(const Alive& alive);
-std::vector<std::byte> encode_text(const std::string& text);  ///< cut at limits::max_text_bytes
+std::vector<std::byte> encode_text(const std::string& text);  ///< truncated to limits::max_text_bytes
 
-// All of these throw MalformedMessage. What comes back keeps within limits.h.
+// All of these throw MalformedMessage. Decoded values are within limits.h.
 Hello decode_hello(std::span<const std::byte> payload);
 Alive decode_alive(std::span<const std::byte> payload);
 std::string decode_text(std::span<const std::byte> payload);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The messages by which nodes are told to read a volume from a file, and what they answer. Their place in a
-// connection: node_protocol.h.
+// Messages that tell nodes to read a volume from a file, and their replies. Their place in a connection:
+// node_protocol.h.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace understudy::compositor {
 
 enum class LoadMessage : std::uint16_t {
   load_volume = 1,  ///< from an application to rank 0
-  continue_load,    ///< the same
+  continue_load,    ///< likewise
   loading,          ///< the reply to both
   histogram,        ///< how often values occur: from an application to rank 0
   counted,          ///< the reply
@@ -34,7 +34,7 @@ struct HistogramQuestion {
 
 std::vector<std::byte> encode(const LoadRequest& request);
 std::vector<std::byte> encode(const HistogramQuestion& question);
-/// Texels by bin.
+/// The number of texels in each bin.
 std::vector<std::byte> encode_histogram(std::span<const std::uint64_t> counts);
 std::vector<std::byte> encode(std::span<const RankLoad> ranks);
 

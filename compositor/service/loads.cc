@@ -68,7 +68,7 @@ RankLoad Loads::figures(VolumeKey key) const {
   figures.brick_bytes = renderer_.bytes(key);
   figures.peak_bytes = peak_resident_bytes();
   figures.cells = renderer_.cells(key);
-  // Texels that several machines read count once.
+  // Texels that several groups read count once.
   if (renderer_.arrangement(key).place(rank_).group > 0) figures.not_numbers = 0;
   return figures;
 }

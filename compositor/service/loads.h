@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The volumes that one rank reads from files: its own box of each, a part at a time, so that a rank that loads
-// can be asked in between how far it is.
+// The volumes that one rank reads from files: its own box of each, in parts, so that a rank can report its
+// progress in between.
 #pragma once
 
 #include <cstddef>
@@ -20,24 +20,24 @@ namespace understudy::compositor {
 
 class Loads {
  public:
-  /// So much of a file is read in one go.
+  /// How much of a file is read at a time.
   static constexpr std::size_t part_bytes = std::size_t(16) << 20;
-  /// Of a compressed file, what one call decompresses before its share: a fraction of a second.
+  /// How much of a compressed file, before the rank's share, one call decompresses: a fraction of a second.
   static constexpr std::uint64_t passed_bytes = std::uint64_t(64) << 20;
 
-  /// Texels go to `renderer`, as rank `rank` of it, from `files` alone.
+  /// Passes texels to `renderer`, as its rank `rank`. Reads from `files` only.
   Loads(RankRenderer& renderer, int rank, volume::ReadableFiles files = {})
       : renderer_(renderer), rank_(rank), files_(std::move(files)) {}
 
   bool knows(VolumeKey key) const { return loads_.contains(key); }
-  /// Begins the volume, and opens its file. Throws RequestRefused and volume::FileError.
+  /// Begins the volume and opens its file. Throws RequestRefused and volume::FileError.
   void begin(VolumeKey key, const LoadRequest& request);
-  /// Throws the same; what had been read is then of no use.
+  /// Reads the next part. Throws the same; what was read before is useless then.
   void read_on(VolumeKey key);
   RankLoad figures(VolumeKey key) const;
-  /// An image took this rank so much.
+  /// Stores what an image took this rank.
   void drew(VolumeKey key, const volume::FrameCounts& counts);
-  /// Once all ranks are done.
+  /// To be called when all ranks are done.
   void complete(VolumeKey key);
 
   void forget(VolumeKey key) { loads_.erase(key); }
@@ -45,14 +45,14 @@ class Loads {
 
  private:
   struct Load {
-    std::optional<volume::TexelStream> stream;  ///< none: complete
-    RankLoad figures;                           ///< but for memory
+    std::optional<volume::TexelStream> stream;  ///< null: complete
+    RankLoad figures;                           ///< except memory
   };
 
   RankRenderer& renderer_;
   int rank_;
   volume::ReadableFiles files_;
-  volume::DicomHeaders headers_;  ///< of the folder that was read last, while there are volumes
+  volume::DicomHeaders headers_;  ///< of the folder read last, as long as there are volumes
   std::map<VolumeKey, Load> loads_;
 };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The messages between an application and a node group, and those of their protocol.
+// The messages between an application and a node group, and their protocol.
 //
-// An application sends a request and waits for its one reply before the next request. Images do not travel in
-// messages: they lie in memory that the application made and whose descriptor it passed along (image_buffer).
-// Of what is rendered, request_message.h; of volumes that nodes read from files, load_protocol.h.
+// An application sends a request and waits for its one reply before it sends the next request. Images are not
+// sent in messages: they lie in memory that the application made and whose descriptor it passed along
+// (image_buffer). Render requests: request_message.h. Volumes that nodes read from files: load_protocol.h.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ enum class NodeMessage : std::uint16_t {
   forget_volume,
   pre_integration_table,
   render,
-  integrals,  ///< what pixels would show without a step (integral_parts.h)
+  integrals,  ///< what pixels would show with ever smaller steps (integral_parts.h)
   // replies, beside LauncherMessage::refused
   done,
   rendered,
@@ -52,24 +52,24 @@ struct Change {
 struct Texels {
   volume::VolumeId volume = 0;
   std::vector<volume::TexelBox> boxes;  ///< none is empty
-  std::span<const std::byte> texels;    ///< of one box after the other; seen in place in the decoded bytes
+  std::span<const std::byte> texels;    ///< of one box after the other; a view of the decoded bytes
 };
 
-/// An image that lies at the beginning of the image buffer.
+/// An image, at the beginning of the image buffer.
 struct RenderedReply {
   volume::Rect rect;
   volume::FrameCounts counts;
 };
 
 std::vector<std::byte> encode(const volume::VolumeDescription& volume);
-/// Everything but the texels, which follow (and, after them, zeros up to a multiple of eight bytes).
+/// Encodes all but the texels, which follow (and, after them, zeros up to a multiple of eight bytes).
 std::vector<std::byte> encode_texels_head(const Texels& texels);
 std::vector<std::byte> encode(const Change& change);
 std::vector<std::byte> encode(const RenderedReply& reply);
 std::vector<std::byte> encode_id(volume::VolumeId id);
 std::vector<std::byte> encode_size(std::uint64_t bytes);
 
-// All of these throw MalformedMessage. What comes back keeps within limits.h.
+// All of these throw MalformedMessage. Decoded values are within limits.h.
 volume::VolumeDescription decode_volume(std::span<const std::byte> payload);
 Change decode_change(std::span<const std::byte> payload);
 Texels decode_texels(std::span<const std::byte> payload);

@@ -38,17 +38,17 @@ using namespace volume;
 struct RankRenderer::Volume {
   Arrangement arrangement;
   Arrangement::Place place;
-  KdTree tree;  ///< of the members of a group
+  KdTree tree;  ///< divides the volume among the members of a group
   BrickStore bricks;
   std::unique_ptr<BrickRenderer> renderer;
   ErrorBoundRenderer bounds;
-  std::vector<TexelBox> shown;  ///< by each member
+  std::vector<TexelBox> shown;  ///< by member
   enum class State { filling, complete, changing } state = State::filling;
   std::uint64_t version;
   std::vector<std::size_t> changed_blocks;
-  bool keeps_bricks;         ///< instead of reading another rank's
-  std::string bricks_path;   ///< of that rank's
-  bool bricks_read = false;  ///< as they are now
+  bool keeps_bricks;         ///< otherwise it reads another rank's
+  std::string bricks_path;   ///< of that rank's bricks
+  bool bricks_read = false;  ///< in their present version
 
   Volume(const VolumeDescription& description, int rank, const Arrangement& arranged, PartitionMethod method,
          const BrickRendererFactory& make_renderer)
@@ -70,7 +70,7 @@ struct RankRenderer::Volume {
       shown.push_back(BrickStore::texels_shown(bricks.description(), tree.box(member)));
   }
 
-  /// All texels have come to the rank that keeps them.
+  /// To be called when all texels have arrived at the rank that keeps them.
   void complete() {
     if (keeps_bricks) {
       if (!bricks.finished()) bricks.finish();
@@ -96,11 +96,10 @@ struct RankRenderer::Volume {
 
 namespace {
 
-// Far below what anybody asks for, far above what costs time without end.
+// Far below any tolerance in use, and far above one that takes endless time.
 constexpr double integral_tolerance = 1e-7;
 
-// What the module `volume` finds wrong with its arguments is a refusal here, and so is a machine that is too
-// small.
+// Turns exceptions of the module `volume` about its arguments into refusals, and lack of memory, too.
 template <class Call>
 auto refusing(Call call) {
   try {
@@ -112,14 +111,14 @@ auto refusing(Call call) {
   }
 }
 
-/// Of the texels that the ranks keep.
+/// Returns the bytes of the texels that the ranks keep.
 std::uint64_t stored_bytes(const VolumeDescription& description) {
   const TexelBox kept =
       description.part ? BrickStore::texels_shown(description, shown_cells(description)) : description.stored;
   return texels_in(kept) * bytes_per_texel(description.type);
 }
 
-/// What a rank has of the stored texels; of what ranks of one machine share, its part.
+/// Returns a rank's share of the stored texels; bricks that ranks of one machine share are divided among them.
 std::uint64_t share_of(const VolumeDescription& description, const Arrangement& arrangement, int rank) {
   const int readers = arrangement.readers(arrangement.place(rank).keeper);
   return stored_bytes(description) / std::uint64_t(arrangement.members()) / std::uint64_t(readers);
@@ -142,7 +141,7 @@ void keep_limits_of_one(const VolumeDescription& description) {
   refusing([&] { return shown_cells(description); });
 }
 
-/// The most samples that an image can have.
+/// Returns the most samples that an image can have.
 double most_samples(const RenderRequest& request) {
   double a_ray = request.planes.count;
   if (request.steps) {
@@ -201,9 +200,9 @@ RankRenderer::Volume& RankRenderer::find_complete(std::uint64_t client, const Re
 }
 
 Arrangement RankRenderer::arranged(const VolumeDescription& description) const {
-  // What other volumes take of a machine; all ranks come to the same.
+  // Subtracts what other volumes take of a machine; all ranks compute the same.
   SortSettings sort = sort_;
-  // A part is as large as the ranks together have room for.
+  // Parts are chosen as large as all ranks together have room for.
   if (description.part) sort.sort = Sort::last;
   for (const auto& [key, volume] : volumes_) {
     const VolumeDescription& held = volume->bricks.description();
@@ -214,12 +213,12 @@ Arrangement RankRenderer::arranged(const VolumeDescription& description) const {
   return {sort, machines_, stored_bytes(description)};
 }
 
-// Asked for early: memory that is promised but not there ends in a killed process, not in an exception.
+// Checked early: memory that is promised but missing ends in a killed process, not in an exception.
 void RankRenderer::keep_limits(VolumeKey key, const VolumeDescription& description) const {
   std::uint64_t in_all = 0;
   std::uint64_t of_client = 0;
   for (const auto& [held, volume] : volumes_) {
-    if (held == key) continue;  // makes room for this one
+    if (held == key) continue;  // it is replaced
     const std::uint64_t share = share_of(volume->bricks.description(), volume->arrangement, rank_);
     in_all += share;
     if (held.client == key.client) of_client += share;
@@ -246,7 +245,7 @@ void RankRenderer::begin(std::uint64_t client, const VolumeDescription& descript
       std::ranges::count_if(volumes_, [&](const auto& entry) { return entry.first.client == client; });
   if (!volumes_.contains(key) && std::size_t(held) >= limits::max_volumes_per_client)
     throw RequestRefused(fmt::format("{} volumes are held already: forget one first", held));
-  // The old one goes first: two versions of a large volume need not fit side by side.
+  // The old volume is freed first: two versions of a large volume need not fit side by side.
   volumes_.erase(key);
   refusing([&] {
     volumes_.emplace(key, std::make_unique<Volume>(description, rank_, arranged(description), sort_.partition,
@@ -313,7 +312,7 @@ void RankRenderer::add_texels(VolumeKey key, std::span<const TexelBox> shares,
 
 void RankRenderer::texels_change(VolumeKey key, std::span<const TexelBox> boxes) {
   Volume& volume = find(key);
-  // Whoever keeps the bricks finds the blocks when it writes them.
+  // The keeper of the bricks finds the changed blocks when it writes them.
   if (volume.keeps_bricks || volume.state != Volume::State::changing) return;
   refusing([&] {
     std::vector<std::size_t>& changed = volume.changed_blocks;
@@ -384,7 +383,7 @@ void RankRenderer::begin_image() {
 void RankRenderer::within_time(Volume& volume, const std::function<void()>& work) {
   if (!image_until_) return work();
   if (done_until(*image_until_, work)) return;
-  // What it keeps of a classification may be half made.
+  // Its prepared classification may be incomplete.
   volume.renderer = make_renderer_(volume.bricks);
   volume.bounds = ErrorBoundRenderer(volume.bricks);
   throw RequestRefused(
@@ -407,7 +406,7 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
   Image image = refusing([&] {
     const VolumeDescription& description = volume.bricks.description();
     validate(description, request);
-    keep_image_limits(request);  // before memory is asked for
+    keep_image_limits(request);  // before memory is allocated
     const Rect everything = request.optimizations.footprints
                                 ? footprint(request, description, volume.tree.box(volume.place.member))
                                 : intersection(request.window, request.viewport);
@@ -415,7 +414,7 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
     FrameCounts here;
     BrickRenderer& renderer = request.bound_of ? volume.bounds : *volume.renderer;
     within_time(volume, [&] { renderer.render(request, result, here, occlusion); });
-    // The first group's bricks are the volume once.
+    // The bricks of the first group are the whole volume.
     if (volume.place.group > 0) here.blocks = here.blocks_empty = 0;
     counts += here;
     return result;
@@ -512,7 +511,7 @@ void RankRenderer::divide(
     volume.find_shown();
     return;
   }
-  // What it keeps is of blocks that are about to move; it goes first, so that there is room.
+  // The renderer keeps data of blocks that are about to move; it is freed first, to make room.
   volume.renderer.reset();
   volume.bricks.reshape(tree.box(rank_), packed_block);
   volume.renderer = make_renderer_(volume.bricks);
@@ -525,7 +524,7 @@ std::vector<int> RankRenderer::visibility_order(std::uint64_t client, const Rend
   const Volume& volume = find_complete(client, request);
   return refusing([&] {
     const std::vector<int> members = volume.tree.visibility_order(request);
-    // Groups show other pixels: in any order.
+    // Groups show different pixels, so their order does not matter.
     std::vector<int> order;
     order.reserve(machines_.size());
     for (int group = 0; group < volume.arrangement.groups(); ++group)

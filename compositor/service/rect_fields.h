@@ -10,9 +10,9 @@
 namespace understudy::compositor {
 
 void write(Writer& out, const volume::Rect& rect);
-/// Throws MalformedMessage where it is no rectangle of a viewport (limits.h).
+/// Throws MalformedMessage if it is no rectangle of a viewport (limits.h).
 volume::Rect read_rect(Reader& in, const std::string& name);
-/// The same, of a rectangle whose pixels will be allocated: no more than limits::max_window_pixels.
+/// Likewise, for a rectangle whose pixels will be allocated: at most limits::max_window_pixels.
 volume::Rect read_pixels(Reader& in, const std::string& name);
 
 }  // namespace understudy::compositor

@@ -45,7 +45,7 @@ class RemoteRenderService : public LoadingService {
       try {
         connection_->send(LauncherMessage::hello_client, ++sequence_, Bytes{}, deadline);
       } catch (const ConnectionLost&) {
-        // Who turns applications away does not hear them out, and has said why.
+        // A launcher that turns applications away does not read their hello, and has sent the reason.
       }
       if (!wait_until_ready(connection_->fd(), POLLIN, deadline))
         throw ConnectionLost(fmt::format("was not there within {} ms", patience_.connect.count()));
@@ -108,7 +108,7 @@ class RemoteRenderService : public LoadingService {
         throw RequestRefused(
             fmt::format("a slice of {} bytes is over the limit of {}", slice_bytes, limits::max_slice_bytes));
       for (int z = box.low[2]; z < box.high[2];) {
-        // As many slices as still fit into the message, and one at least into an empty one.
+        // As many slices as still fit into the message, but at least one into an empty message.
         const std::size_t room = limits::max_slice_range_bytes -
                                  std::min<std::size_t>(limits::max_slice_range_bytes, message.texels.size());
         const std::size_t fits =
@@ -146,7 +146,7 @@ class RemoteRenderService : public LoadingService {
         request(NodeMessage::render, encode(wanted, table_at), patience_.render, NodeMessage::rendered);
     const RenderedReply rendered = conversation([&] { return decode_rendered(reply.payload); });
     const std::size_t floats = 4 * rendered.rect.pixels();
-    // An empty image needs no place in the window.
+    // An empty image need not lie in the window.
     if (floats > image_.floats().size() ||
         (floats > 0 && intersection(rendered.rect, wanted.window) != rendered.rect))
       lose("answered with an image that does not fit the window");
@@ -172,7 +172,7 @@ class RemoteRenderService : public LoadingService {
     return conversation([&] { return decode_loads(reply.payload); });
   }
 
-  // Where the nodes have the table; it is sent where they have not.
+  // Returns the table's place on the nodes; sends the table if they do not have it.
   int place_of(const volume::PreIntegrationTable& pairs) {
     if (const std::optional<int> place = pre_integration_tables_.find(pairs)) return *place;
     const int place = pre_integration_tables_.make_place();
@@ -181,14 +181,14 @@ class RemoteRenderService : public LoadingService {
     return place;
   }
 
-  // Images never get larger than the window, so the memory is made once per size of window.
+  // Images never exceed the window, so the memory is made once per window size.
   void make_room(const volume::Rect& window) {
     if (window.pixels() > limits::max_window_pixels)
       throw RequestRefused(fmt::format("an image of {} pixels is over the limit of {}", window.pixels(),
                                        limits::max_window_pixels));
     const std::uint64_t bytes = window.pixels() * 4 * sizeof(float);
     if (bytes <= image_.bytes()) return;
-    image_ = {};  // the old one goes first: the image in it is given up by this call
+    image_ = {};  // first: this call invalidates the image in the old one
     ImageBuffer fresh;
     try {
       fresh = ImageBuffer::create(bytes);
@@ -208,14 +208,14 @@ class RemoteRenderService : public LoadingService {
     return request(type, {&part, 1}, patience, expected);
   }
 
-  // One request and its one reply.
+  // Sends one request and receives its reply.
   Message request(MessageType type, std::span<const Bytes> parts, milliseconds patience,
                   MessageType expected = NodeMessage::done, int attach = -1) {
     send(type, parts, attach);
     return reply(patience, expected);
   }
 
-  // A request whose reply is awaited before the next one: the caller prepares that meanwhile.
+  // Sends a request whose reply is received before the next request: the caller prepares that meanwhile.
   void post(MessageType type, const std::vector<std::byte>& payload) {
     const Bytes part(payload);
     post(type, {&part, 1});
@@ -244,7 +244,7 @@ class RemoteRenderService : public LoadingService {
     reply(patience_.reply, NodeMessage::done);
   }
 
-  // A volume whose sending was broken off: that it was refused, too, concerns nobody any longer.
+  // If sending a volume was broken off, a refusal of that volume is ignored.
   void give_up_posted() {
     try {
       settle_posted();
@@ -261,8 +261,7 @@ class RemoteRenderService : public LoadingService {
     return reply;
   }
 
-  // Whatever goes wrong while talking ends the conversation for good: a late answer must not be taken for the
-  // next.
+  // Any error ends the connection for good: a late reply must not be taken for the next one.
   template <class Talk>
   std::invoke_result_t<Talk> conversation(Talk talk) {
     try {
@@ -285,7 +284,7 @@ class RemoteRenderService : public LoadingService {
   std::optional<Connection> connection_;
   std::string lost_;
   std::uint64_t sequence_ = 0;
-  bool posted_ = false;  // the reply to the last request is still to come
+  bool posted_ = false;  // the reply to the last request has not been received yet
   int ranks_ = 0;
   pid_t process_ = ::getpid();
   ImageBuffer image_;

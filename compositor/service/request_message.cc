@@ -33,7 +33,7 @@ void write_run(Writer& out, const std::vector<T>& values) {
   out.run(std::as_bytes(std::span(values)));
 }
 
-/// In place of a classification's index: a pre-integration table that was sent before.
+/// In place of a classification's index: the place of a pre-integration table that was sent before follows.
 constexpr int kept_tables = int(std::variant_size_v<Classification>);
 
 void write(Writer& out, const PreIntegrationTable& pairs) {

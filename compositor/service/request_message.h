@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A request for an image as a message, and the pre-integration tables that requests name by their place.
+// A render request as a message, and pre-integration tables to which requests refer by place.
 #pragma once
 
 #include <cstddef>
@@ -15,19 +15,19 @@ struct RenderRequest;
 
 namespace understudy::compositor {
 
-/// A table that the requests that follow may name by its place.
+/// A table to which later requests may refer by its place.
 struct KeptPreIntegrationTable {
   int place = 0;  ///< below limits::max_kept_pre_integration_tables
   volume::PreIntegrationTable table;
 };
 
 std::vector<std::byte> encode(const KeptPreIntegrationTable& kept);
-/// With `table_at`, a pre-integration table is not written but named by the place that it was sent to.
+/// With `table_at`, writes the place to which a pre-integration table was sent, instead of the table.
 std::vector<std::byte> encode(const volume::RenderRequest& request, std::optional<int> table_at = {});
 
-// Both throw MalformedMessage. What comes back keeps within limits.h.
+// Both throw MalformedMessage. Decoded values are within limits.h.
 KeptPreIntegrationTable decode_pre_integration_table(std::span<const std::byte> payload);
-/// `kept` by their places; where there is none its edge is 0.
+/// `kept` is by place; an empty place has a table of edge 0.
 volume::RenderRequest decode_request(std::span<const std::byte> payload,
                                      std::span<const volume::PreIntegrationTable> kept = {});
 

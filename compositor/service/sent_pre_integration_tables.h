@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which pre-integration tables the nodes have: these are megabytes, and requests name them instead of bringing
-// them along.
+// Which pre-integration tables the nodes have: requests refer to these megabytes instead of containing them.
 #pragma once
 
 #include <array>
@@ -14,12 +13,11 @@ namespace understudy::compositor {
 
 class SentPreIntegrationTables {
  public:
-  /// The place of a table that is equal in every entry.
+  /// Returns the place of a table that is equal in every entry; null if there is none.
   std::optional<int> find(const volume::PreIntegrationTable& table);
-  /// The place for another table: empty, or that of the table not asked for longest. What was there is
-  /// forgotten.
+  /// Returns a place for another table: an empty one, or that of the least recently used one.
   int make_place();
-  /// The nodes have taken in the table for that place.
+  /// To be called when the nodes have received the table for that place.
   void put(int place, const volume::PreIntegrationTable& table);
 
  private:

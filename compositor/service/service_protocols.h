@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The protocols that applications, the launcher and nodes speak on one connection.
+// The protocols of a connection between applications, the launcher and nodes.
 #pragma once
 
 #include <array>

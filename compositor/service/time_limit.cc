@@ -10,7 +10,7 @@
 namespace understudy::compositor {
 
 bool done_until(Deadline until, const std::function<void()>& work) {
-  // Parallel loops that `work` begins are cancelled with the group that it runs in.
+  // Cancels the group in which `work` runs, together with the parallel loops that `work` begins.
   tbb::task_group_context context;
   std::mutex mutex;
   std::condition_variable_any ended;
@@ -19,7 +19,7 @@ bool done_until(Deadline until, const std::function<void()>& work) {
     ended.wait_until(lock, stop, until, [] { return false; });
     if (!stop.stop_requested()) context.cancel_group_execution();
   });
-  // The context forgets after this that it was cancelled.
+  // run_and_wait() resets the context's cancellation, so its result is what counts.
   const bool done = tbb::task_group(context).run_and_wait(work) != tbb::canceled;
   clock.request_stop();
   return done;

@@ -13,7 +13,7 @@
 namespace understudy::compositor {
 namespace {
 
-/// Whether `count` threads can run at once, besides those that there are.
+/// Whether `count` more threads can run at once.
 bool can_start(std::size_t count) {
   std::latch all_tried(1);
   std::vector<std::jthread> threads;
@@ -27,8 +27,8 @@ bool can_start(std::size_t count) {
   return threads.size() == count;
 }
 
-/// Where oneTBB's first initialisation throws, the next call that needs one waits for its end, for ever: it is
-/// not called again in this process.
+/// If oneTBB's first initialisation throws, the next call that needs one waits for it for ever: oneTBB is not
+/// called again in this process.
 constinit std::atomic<bool> initialisation_failed{false};
 
 std::size_t allowed_parallelism() {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How many threads parallel loops may run on.
 //
-// oneTBB starts its threads in the midst of a loop and does not survive when one cannot be started: the
-// exception leaves its own lock locked, and the next loop waits for it for ever. So as many are started here
+// oneTBB starts its threads in the middle of a loop and fails badly if one cannot be started: the exception
+// leaves a lock of oneTBB locked, and the next loop waits for it for ever. So as many threads are started here
 // first.
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace understudy::compositor {
 
-/// As long as it lives, parallel loops of this process run on the calling thread alone if the threads that they
-/// would take cannot be started (ulimit -u, ulimit -v, pids.max).
+/// During its lifetime, parallel loops of this process run on the calling thread alone if the threads that they
+/// would use cannot be started (ulimit -u, ulimit -v, pids.max).
 class WorkerThreads {
  public:
   WorkerThreads();

@@ -13,7 +13,7 @@ using volume::Rect;
 
 namespace {
 
-/// Where tiles of `first` to `first + length` begin, and the last one ends.
+/// Returns where the tiles of `first` to `first + length` begin, and where the last one ends.
 std::vector<int> borders_of(int first, int length) {
   std::vector<int> borders{first};
   const int remainder = ((first % volume::occlusion_tile) + volume::occlusion_tile) % volume::occlusion_tile;
@@ -24,7 +24,7 @@ std::vector<int> borders_of(int first, int length) {
   return borders;
 }
 
-/// Between two borders: the one below, and how far on.
+/// A place between two borders: the lower border, and the fraction of the distance to the next.
 struct Between {
   std::size_t border = 0;
   double part = 0;

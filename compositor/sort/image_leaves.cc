@@ -10,7 +10,7 @@ using volume::Rect;
 
 namespace {
 
-/// The low side of `rect`, cut at `cut` across its longer side, and the high side.
+/// The two parts of a rectangle that is cut at `cut` across its longer side.
 struct Halves {
   Rect low, high;
 };
@@ -33,13 +33,13 @@ Halves cut_at(const Rect& rect, int cut) {
   return halves;
 }
 
-/// `at`, or the multiple of the alignment next to it.
+/// Rounds `at` to the nearest multiple of the alignment.
 int aligned(int at) {
   const int remainder = ((at % leaf_alignment) + leaf_alignment) % leaf_alignment;
   return remainder * 2 < leaf_alignment ? at - remainder : at - remainder + leaf_alignment;
 }
 
-/// Where the low side has `share` of the cost; of the pixels, where nothing costs anything.
+/// Returns where the low side has `share` of the cost, or of the pixels if nothing has a cost.
 int fair_cut(const CostImage& costs, const Rect& rect, double share) {
   const int first = is_wide(rect) ? rect.x : rect.y;
   const int length = is_wide(rect) ? rect.width : rect.height;

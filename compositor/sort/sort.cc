@@ -10,8 +10,8 @@ namespace understudy::compositor {
 
 namespace {
 
-/// Ranks by their machines, machines in the order of their first ranks; nothing where some have more ranks than
-/// others.
+/// Returns the ranks by machine, machines in the order of their first ranks; null if some machines have more
+/// ranks than others.
 std::optional<std::vector<std::vector<int>>> equal_machines(const std::vector<int>& machines) {
   std::vector<std::vector<int>> ranks;
   std::vector<int> known;
@@ -28,7 +28,7 @@ std::optional<std::vector<std::vector<int>>> equal_machines(const std::vector<in
   return ranks;
 }
 
-/// How many of `all` hold a copy together: the least divisor that is enough.
+/// Returns the least divisor of `all` that is enough.
 template <class IsEnough>
 int least_divisor(int all, IsEnough is_enough) {
   for (int divisor = 1; divisor < all; ++divisor)
@@ -36,7 +36,7 @@ int least_divisor(int all, IsEnough is_enough) {
   return std::max(all, 1);
 }
 
-/// Whether a copy that so many hold, of `all`, is one of those that are asked for.
+/// Whether `settings` allow a copy of `bytes` to be divided among `members` of `all`.
 bool is_enough(const SortSettings& settings, int members, int all, std::uint64_t bytes) {
   switch (settings.sort) {
     case Sort::automatic:
@@ -83,13 +83,13 @@ Arrangement::Arrangement(const SortSettings& settings, const std::vector<int>& m
     : places_(machines.size()), ranks_(machines.size()) {
   const auto by_machine = equal_machines(machines);
   const int count = by_machine ? int(by_machine->size()) : 0;
-  // Machines hold copies together, and the ranks of each divide its part of the image. Where all ranks divide
-  // one volume, or machines differ, each rank counts as a machine.
+  // A copy is divided among machines, and the ranks of a machine are the same member of different groups. If
+  // all ranks divide one volume, or machines have different numbers of ranks, each rank counts as a machine.
   const bool of_machines =
       count > 0 && settings.sort != Sort::last && (settings.sort != Sort::hybrid || count > 1);
   const int all = of_machines ? count : ranks();
   members_ = least_divisor(all, [&](int members) {
-    // Which ranks of unequal machines would hold a copy together cannot be said: one, or all.
+    // Unequal machines cannot be grouped by memory: a copy is held by one rank, or by all together.
     if (settings.sort == Sort::automatic && !of_machines && members > 1) return false;
     return is_enough(settings, members, all, bytes);
   });

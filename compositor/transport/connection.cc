@@ -15,10 +15,10 @@ namespace understudy::compositor {
 
 namespace {
 
-// One call of receive_some() takes at most this much.
+// One call of receive_some() reads at most this much.
 constexpr std::size_t fair_share = std::size_t(8) << 20;
 
-// The first descriptor that came along; others were not asked for and are closed.
+// Keeps the first descriptor that came along; others were not asked for and are closed.
 void keep_attached(msghdr& message, FileDescriptor& attached) {
   for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr; part = CMSG_NXTHDR(&message, part)) {
     if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_RIGHTS) continue;
@@ -34,7 +34,7 @@ void keep_attached(msghdr& message, FileDescriptor& attached) {
 
 }  // namespace
 
-// Bytes read; zero when none are there now.
+// Returns the number of bytes read; zero if none are available now.
 std::size_t Connection::read(std::byte* to, std::size_t size) {
   alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(sizeof(int))> control{};
   iovec data{to, size};
@@ -81,7 +81,7 @@ std::optional<Message> Connection::receive_some() {
     const std::size_t have = received_ - sizeof header_;
     const std::size_t total = std::size_t(header_.payload_bytes);
     if (have < total) {
-      // Memory grows with what has arrived, not with what was promised.
+      // Memory grows with what has arrived, not with what was announced.
       if (message_.payload.size() == have)
         message_.payload.resize(std::min(total, std::max(limits::read_ahead, 2 * have)));
       const std::size_t got = read(message_.payload.data() + have, message_.payload.size() - have);
@@ -121,7 +121,7 @@ void Connection::send(MessageType type, std::uint64_t sequence, std::span<const 
   write(type, sequence, parts, attach, [&] { return Clock::now() + patience; });
 }
 
-/// `deadline_now` is asked anew whenever some has left.
+/// `deadline_now` is called again whenever some bytes have been sent.
 template <class DeadlineNow>
 void Connection::write(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts, int attach,
                        DeadlineNow deadline_now) {
@@ -131,7 +131,7 @@ void Connection::write(MessageType type, std::uint64_t sequence, std::span<const
   for (const Bytes& part : parts) header.payload_bytes += part.size();
 
   std::vector<iovec> pieces{{&header, sizeof header}};
-  // sendmsg() takes pointers to non-const and does not write.
+  // sendmsg() takes pointers to non-const, but does not write.
   for (const Bytes& part : parts)
     if (!part.empty()) pieces.push_back({const_cast<std::byte*>(part.data()), part.size()});
 
@@ -162,7 +162,7 @@ void Connection::write(MessageType type, std::uint64_t sequence, std::span<const
       continue;
     }
     deadline = deadline_now();
-    // The descriptor went with the first byte.
+    // The descriptor was sent with the first byte.
     message.msg_control = nullptr;
     message.msg_controllen = 0;
     for (std::size_t left = std::size_t(sent); message.msg_iovlen > 0;) {

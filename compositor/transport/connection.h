@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages over one Unix socket. Never raises SIGPIPE, never waits longer than it was told to, never reads
-// beyond the message it returns (so that the socket can be handed to another process afterwards).
+// Messages over one Unix socket. Never raises SIGPIPE, never waits longer than it is told to, and never reads
+// beyond the message it returns (so that the socket can be passed to another process afterwards).
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace understudy::compositor {
 
-/// The peer is gone, or did not take or give a message in time. The text says which, as in "... closed the
+/// The peer is gone, or did not read or send a message in time. The text says which, as in "... closed the
 /// connection".
 class ConnectionLost : public std::runtime_error {
  public:
@@ -40,36 +40,36 @@ class Connection {
 
   int fd() const { return socket_.get(); }
 
-  /// Takes what is there; a message once it is complete. A long message needs several calls, so that one peer
-  /// cannot keep the caller from the others. Throws ConnectionLost, and MalformedMessage: after either nothing
-  /// more can be read.
+  /// Reads what is available; returns a message once it is complete. A long message needs several calls, so
+  /// that one peer cannot keep the caller from the others. Throws ConnectionLost, and MalformedMessage: after
+  /// either nothing more can be read.
   std::optional<Message> receive_some();
-  /// Throws ConnectionLost, also at the deadline.
+  /// Waits for a message. Throws ConnectionLost, also at the deadline.
   Message receive(Deadline deadline);
-  /// For who hands on a message before all of it is here: its header, once that has come; null before. Throws
-  /// as receive_some(), which may take that message as well.
+  /// For forwarding a message before all of it has arrived: returns its header, once that is complete; null
+  /// before. Throws as receive_some(), which may be called for that message instead.
   const MessageHeader* receive_header();
-  /// Some of the payload of that message, which begins at the last receive_header(); how much it was, and zero
-  /// when nothing is there now. To be called until it has come whole. Throws ConnectionLost.
+  /// Reads some of the payload of the message of the last receive_header(). Returns how much; zero if nothing
+  /// is available now. To be called until the payload is complete. Throws ConnectionLost.
   std::size_t receive_payload(std::span<std::byte> room);
-  /// The beginning of a message is here.
+  /// Whether the beginning of a message has arrived.
   bool unfinished() const { return received_ > 0; }
-  /// And nothing more of it has come for `patience`.
+  /// Whether in addition nothing more of it has arrived for `patience`.
   bool stalled(std::chrono::milliseconds patience) const;
 
-  /// Sends a header and the payload made of `parts`, with a descriptor attached when `attach` is one. Throws
-  /// ConnectionLost, also at the deadline; a deadline that has passed means: now or never.
+  /// Sends a header and the payload made of `parts`, with the descriptor `attach` unless that is -1. Throws
+  /// ConnectionLost, also at the deadline; a deadline in the past means: now or never.
   void send(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts, Deadline deadline,
             int attach = -1);
   void send(MessageType type, std::uint64_t sequence, Bytes payload, Deadline deadline, int attach = -1) {
     send(type, sequence, {&payload, 1}, deadline, attach);
   }
-  /// The same, and throws ConnectionLost when nothing more of it left for `patience`: a long message may be on
-  /// its way for longer, as lines may be slow.
+  /// Likewise, but throws ConnectionLost when nothing more could be sent for `patience`: all of a long message
+  /// may take longer over a slow connection.
   void send(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts,
             std::chrono::milliseconds patience, int attach = -1);
 
-  /// What an event loop sends: now or never.
+  /// The deadline for event loops: now or never.
   static Deadline now_or_never() { return {}; }
 
  private:

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t longest_path = sizeof sockaddr_un::sun_path;
 
-/// Whoever connects does not wait for a listener, so it answers soon, even where the caller's time is short.
+/// The other process does not wait for a listener, so it answers soon, even if the caller's time is short.
 constexpr std::chrono::seconds patience_with_answer{2};
 
 struct Answer {
@@ -32,7 +32,7 @@ struct Answer {
 };
 
 struct Asking {
-  std::mutex mutex;  // a question and its answer belong together
+  std::mutex mutex;  // held from a question to its answer
   FileDescriptor channel;
   std::uint64_t questions = 0;
 };
@@ -42,7 +42,7 @@ Asking& asking() {
   return state;
 }
 
-/// The room for one descriptor beside a message.
+/// Space for one descriptor beside a message.
 union DescriptorRoom {
   cmsghdr header;
   std::array<std::byte, CMSG_SPACE(sizeof(int))> bytes;
@@ -68,7 +68,7 @@ bool send_answer(int channel, std::uint64_t question, const ConnectionAttempt& a
   return ::sendmsg(channel, &message, MSG_NOSIGNAL | MSG_DONTWAIT) >= 0;
 }
 
-/// Empty when it is that to an earlier question, which nobody waits for any more.
+/// Returns null if the answer is to an earlier question, for which nobody waits any more.
 std::optional<ConnectionAttempt> received_answer(int channel, std::uint64_t question) {
   ConnectionAttempt attempt;
   Answer answer;
@@ -93,7 +93,7 @@ std::optional<ConnectionAttempt> received_answer(int channel, std::uint64_t ques
   return attempt;
 }
 
-/// A question may be for a path that names no socket, and descriptors may be used up: neither ends who answers.
+/// The path may name no socket, and descriptors may be used up: neither ends the answering process.
 ConnectionAttempt attempt_for_another(const std::string& path) {
   try {
     return attempt_to_connect(path);
@@ -143,7 +143,7 @@ bool answer_connector(const FileDescriptor& channel, std::span<const std::string
   msghdr message{};
   message.msg_iov = parts.data();
   message.msg_iovlen = parts.size();
-  // Descriptors that come along are not taken: there is no room for them.
+  // Attached descriptors are not received: there is no room for them.
   const ssize_t got = ::recvmsg(channel.get(), &message, MSG_DONTWAIT);
   if (got < 0) return errno == EAGAIN || errno == EINTR;
   if (got < ssize_t(sizeof question)) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Connections for a process that may make no socket: another one, which is trusted, connects for it and passes
-// the socket along a channel.
+// Connections for a process that may not make sockets: another, trusted process connects for it and passes the
+// socket along a channel.
 #pragma once
 
 #include <optional>
@@ -13,19 +13,19 @@
 
 namespace understudy::compositor {
 
-/// The two ends: of the process that connects, and of the one that asks. Throws std::runtime_error.
+/// Returns the two ends: of the process that connects, and of the one that asks. Throws std::runtime_error.
 std::pair<FileDescriptor, FileDescriptor> connector_channel();
 
-/// From now on connect_to() (socket.h) asks at the other end of `channel`, on every thread.
+/// From now on connect_to() (socket.h) asks the process at the other end of `channel`, on every thread.
 void connect_through(FileDescriptor channel);
 
-/// One attempt by whoever is at the other end; empty where this process connects itself. An end that is gone,
-/// or does not answer in time, is an error.
+/// Asks for one attempt by the process at the other end; null if this process connects itself. If the other end
+/// has gone or does not answer in time, the attempt has an error.
 std::optional<ConnectionAttempt> ask_for_connection(const std::string& path, Deadline deadline);
 
-/// Answers one question that waits in `channel`, if any does: an attempt, without waiting, to connect to a path
-/// in `allowed`; EACCES for others, EINVAL where no attempt can be made. False when nobody is at the other end
-/// any more.
+/// Answers one question that waits in `channel`, if there is one: attempts, without waiting, to connect to a
+/// path in `allowed`; the error is EACCES for other paths, and EINVAL if no attempt can be made. Returns false
+/// if the other end has gone.
 bool answer_connector(const FileDescriptor& channel, std::span<const std::string> allowed);
 
 }  // namespace understudy::compositor

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The header that every message begins with, of whatever protocol.
+// The header that every message begins with, whatever its protocol.
 //
-// A protocol is an enum of messages (numbered from 1), a number of its own and a version, in a header of its
-// own: compositor/service/{launcher,node,load}_protocol.h, spu/remote/gl_server_protocol.h,
+// A protocol is an enum of messages (numbered from 1), with a number and a version of its own, in a header file
+// of its own: compositor/service/{launcher,node,load}_protocol.h, spu/remote/gl_server_protocol.h,
 // transport/tcp/line_protocol.h. Beside its enum it defines
 //
-//     constexpr Protocol protocol_of(NodeMessage) { return {2, 13, std::uint16_t(NodeMessage::last)}; }
+//     constexpr Protocol protocol_of(NodeMessage) { return {2, 16, std::uint16_t(NodeMessage::last)}; }
 //
-// and its enumerators then are types of messages.
+// and its enumerators are then message types.
 #pragma once
 
 #include <concepts>
@@ -21,9 +21,9 @@
 namespace understudy::compositor {
 
 struct Protocol {
-  std::uint8_t number = 0;   ///< no two protocols have the same
+  std::uint8_t number = 0;   ///< unique
   std::uint8_t version = 0;  ///< grows with every change of a message
-  std::uint16_t last = 0;    ///< the highest message
+  std::uint16_t last = 0;    ///< the number of the last message
 };
 
 /// An enum whose enumerators are the messages of a protocol.
@@ -32,7 +32,7 @@ concept ProtocolMessage = requires(Enum message) {
   { protocol_of(message) } -> std::same_as<Protocol>;
 };
 
-/// A message of some protocol, as it stands in a header.
+/// A message type of some protocol, as in a header.
 struct MessageType {
   std::uint8_t protocol = 0;
   std::uint8_t version = 0;
@@ -46,7 +46,7 @@ struct MessageType {
         version(protocol_of(message).version),
         number(std::uint16_t(message)) {}
 
-  /// The message, if it is one of this protocol.
+  /// Returns the message, if it belongs to this protocol.
   template <ProtocolMessage Enum>
   constexpr std::optional<Enum> as() const {
     if (protocol != protocol_of(Enum{}).number) return std::nullopt;
@@ -62,7 +62,7 @@ struct MessageHeader {
   std::uint32_t magic = message_magic;
   MessageType type;
   std::uint64_t payload_bytes = 0;
-  std::uint64_t sequence = 0;  ///< a reply repeats that of its request
+  std::uint64_t sequence = 0;  ///< a reply has that of its request
 };
 static_assert(sizeof(MessageHeader) == 24);
 

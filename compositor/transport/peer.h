@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is at the other end of a Unix socket. A path in a folder that others may write into says nothing about
+// Which user is at the other end of a Unix socket. A path in a folder that others may write into does not show
 // who listens there, so both ends ask the kernel (SO_PEERCRED).
 #pragma once
 
@@ -10,19 +10,19 @@
 
 namespace understudy::compositor {
 
-/// Another user listens at the path that was given.
+/// Another user listens at the given path.
 class ForeignListener : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The user who listens, or who connected. Throws std::runtime_error.
+/// Returns the user who listens, or who connected. Throws std::runtime_error.
 uid_t peer_user(int socket);
 
-/// Of a connection that was accepted: whether it comes from this process's user.
+/// Whether an accepted connection comes from this process's user.
 bool is_of_same_user(int socket);
 
-/// Of a connection to `path`: throws ForeignListener when its listener is not of user `wanted`.
+/// Throws ForeignListener if the listener of a connection to `path` does not belong to user `wanted`.
 void require_listener_of(uid_t wanted, int socket, const std::string& path);
 
 }  // namespace understudy::compositor

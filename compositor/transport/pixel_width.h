@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// How wide the numbers are in which the pixels of an image travel.
+// The width of the numbers in which pixels of an image are sent.
 #pragma once
 
 #include <cstdint>
 
 namespace understudy::compositor {
 
-/// What a value is rounded to, each time it travels: rgba32f not at all; rgba16f to 2^-11 of itself, at most
-/// 65504; rgba8 to 1/510, in [0, 1].
+/// How a value is rounded each time it is sent: rgba32f not at all; rgba16f to 2^-11 of itself, at most 65504;
+/// rgba8 to 1/510, in [0, 1].
 enum class Layout : std::uint8_t { rgba32f, rgba16f, rgba8 };
 
 }  // namespace understudy::compositor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where sockets and private folders of runs lie.
+// The folder for sockets and for private folders of runs.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@ namespace understudy::compositor {
 /// Whether `folder` belongs to this user and nobody else may write into it.
 bool is_private_folder(const std::filesystem::path& folder);
 
-/// $XDG_RUNTIME_DIR, where it is private and can be written to: names in it may be predictable.
+/// Returns $XDG_RUNTIME_DIR if it is private and writable: names in it may be predictable.
 std::optional<std::filesystem::path> private_runtime_folder();
 
 /// The same, or else /tmp, where only names that nobody can guess are safe.

@@ -47,7 +47,7 @@ FileDescriptor new_socket() {
                                        std::strerror(errno)));
 }
 
-/// Beside `path`, and nobody's guess.
+/// Returns a path beside `path`, with a name that nobody can guess.
 std::string name_beside(const std::string& path) {
   std::uint32_t random = 0;
   if (::getrandom(&random, sizeof random, 0) != ssize_t(sizeof random)) cannot_listen(path);
@@ -58,7 +58,7 @@ int try_to_connect(int fd, const sockaddr_un& address) {
   return ::connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ? 0 : errno;
 }
 
-/// Throws where the path is taken.
+/// Throws if the path is taken.
 void remove_dead_socket(const std::string& path) {
   const sockaddr_un address = address_of(path);
   struct stat existing {};
@@ -89,16 +89,15 @@ bool wait_until_ready(int fd, short events, Deadline deadline) {
 FileDescriptor listen_at(const std::string& path) {
   remove_dead_socket(path);
   FileDescriptor result = new_socket();
-  // A socket that has a name refuses connections until somebody listens at it, as one does whose listener is
-  // gone. So it gets its name then.
+  // A socket that has a name refuses connections until somebody listens on it, just like one whose listener has
+  // gone. So it gets its name only then.
   const std::string unfinished = name_beside(path);
   const sockaddr_un address = address_of(unfinished);
-  // On Linux the socket's own mode becomes that of its file, so that there is no moment in which others may
-  // connect.
+  // On Linux the socket's own mode becomes that of its file, so there is no moment in which others may connect.
   ::fchmod(result.get(), 0600);
   if (::bind(result.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
     cannot_listen(path);
-  // A connection, unlike a rename, takes nobody's place.
+  // A hard link, unlike a rename, replaces no other file.
   const bool listens = ::listen(result.get(), SOMAXCONN) == 0 && ::link(unfinished.c_str(), path.c_str()) == 0;
   const int reason = errno;
   ::unlink(unfinished.c_str());

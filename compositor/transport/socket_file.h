@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The file by which others find a socket that this process listens at.
+// The file by which others find a socket at which this process listens.
 #pragma once
 
 #include <sys/types.h>
@@ -8,10 +8,10 @@
 
 namespace understudy::compositor {
 
-/// Removed at the end, unless another file has taken its place.
+/// Removes its file when it is destroyed, unless another file has replaced it.
 class SocketFile {
  public:
-  /// The file that is at `path` now.
+  /// Owns the file that is at `path` now.
   explicit SocketFile(std::string path);
   SocketFile(const SocketFile&) = delete;
   SocketFile& operator=(const SocketFile&) = delete;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fields of a message as bytes: every scalar takes eight bytes, every run of bytes is padded to a multiple of
-// eight, numbers are in the machine's own order (the peers share one machine or one kind of machine,
+// eight, and numbers are in the machine's own order (the peers share one machine or one kind of machine,
 // little-endian).
 #pragma once
 
@@ -20,7 +20,7 @@ namespace understudy::compositor {
 static_assert(std::endian::native == std::endian::little,
               "the messages are little-endian and are not converted");
 
-/// A message that cannot be believed. The text names message, field and offset.
+/// A message that cannot be trusted. The text names message, field and offset.
 class MalformedMessage : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -30,7 +30,7 @@ class Writer {
  public:
   void integer(std::int64_t value) { append(&value, sizeof value); }
   void real(double value) { append(&value, sizeof value); }
-  /// A length and that many bytes.
+  /// Writes a length and that many bytes.
   void run(std::span<const std::byte> bytes) {
     integer(std::int64_t(bytes.size()));
     append(bytes.data(), bytes.size());
@@ -48,9 +48,8 @@ class Writer {
   std::vector<std::byte> bytes_;
 };
 
-/// Reads what a Writer wrote. Each function throws MalformedMessage when the bytes end early or the value lies
-/// outside the stated range; no length is believed before it has been compared with its limit and with what is
-/// there.
+/// Reads what a Writer wrote. Each function throws MalformedMessage if the bytes end early or the value is
+/// outside the stated range; every length is compared with its limit and with the bytes left before it is used.
 class Reader {
  public:
   Reader(std::string_view message, std::span<const std::byte> bytes) : message_(message), bytes_(bytes) {}
@@ -60,11 +59,11 @@ class Reader {
   /// Any bit pattern: ids and counters.
   std::uint64_t word(std::string_view field);
   bool flag(std::string_view field) { return integer(field, 0, 1) != 0; }
-  /// Any bit pattern: whether a number makes sense is for volume::validate to say.
+  /// Any bit pattern: volume::validate() decides whether the value makes sense.
   double real(std::string_view field);
-  /// A number that a float holds (or an infinity, or no number).
+  /// A number that fits a float (or infinity, or NaN).
   float real32(std::string_view field);
-  /// A run of at most `max` bytes, seen in place.
+  /// A run of at most `max` bytes, as a view of the message.
   std::span<const std::byte> run(std::string_view field, std::uint64_t max);
   /// A run of plain values, at most `max` of them.
   template <class T>
@@ -80,7 +79,7 @@ class Reader {
   Enum enumerator(std::string_view field, Enum last) {
     return Enum(integer(field, 0, std::int64_t(last)));
   }
-  /// Nothing may be left over.
+  /// Throws if bytes are left over.
   void end();
 
   [[noreturn]] void fail(std::string_view field, std::string_view what) const;

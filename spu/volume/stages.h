@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stages of the volume unit, wired: each is handed the stages below it that it works with.
+// Constructs the stages of the volume unit, and passes to each stage the stages that it uses.
 #pragma once
 
 #include <functional>
@@ -15,9 +15,9 @@
 
 namespace understudy::spu {
 
-/// Of one context, which must be current whenever one of them is used.
+/// The stages of one context, which must be current whenever one of them is used.
 struct Stages {
-  /// `owner` names the context in the ledger; `nothing_held` is called when runs no longer wait for each other.
+  /// `owner` identifies the context in the ledger; `nothing_held` is called when `merger` no longer holds runs.
   Stages(const GlContext& context, ShareGroup& group, RenderSession& session, KnownVolumes& volumes,
          ProgramSamplers& samplers, FrameLedger::Context owner, std::function<void()> nothing_held)
       : account(context, session.ledger(), owner),

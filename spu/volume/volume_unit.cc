@@ -19,10 +19,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Fewer textures in a row are no stack worth looking at.
+/// Fewer textured quads in a row are not examined.
 constexpr std::size_t fewest_stack_slices = 8;
 
-/// Of the samples on rays of all directions, in texture space; 1 where slices say how many there are.
+/// Returns the density of samples in texture space over rays of all directions; 1 for slices.
 double sample_density(const volume::RenderRequest& request) {
   if (!request.steps) return 1;
   double square = 0;
@@ -32,7 +32,7 @@ double sample_density(const volume::RenderRequest& request) {
 
 }  // namespace
 
-/// A run that nodes can render.
+/// A recognised run with the request and the camera that render it.
 struct VolumeUnit::Recognised {
   const RecognisedRun& seen;
   ImageRequest& image;
@@ -79,7 +79,7 @@ bool VolumeUnit::substitutes(std::unique_ptr<Run>& run) {
   FrameAccount& account = stages().account;
   const FrameShares spent = account.clock().take();
   account.note([&](FrameRecord& frame) { frame.spent_ms += spent; });
-  // A stack of textures that turned out to be none is no volume.
+  // No volume is found for a stack of textures that turned out not to be one.
   if (KnownVolume* const volume = volumes_.find(texture))
     count_speed(*volume, shown, spent, session_->options());
   return shown;
@@ -112,7 +112,7 @@ bool VolumeUnit::shows(std::unique_ptr<Run>& run) {
   } catch (const compositor::ServiceLost& lost) {
     const auto lock = session_->lock();
     session_->lost(lost);
-    // Said once by whoever started the nodes, or by the session.
+    // Whoever started the nodes, or the session, prints the loss once.
     volumes_.refuse(texture, lost.reason(), account, false);
   } catch (const std::exception& error) {
     volumes_.refuse(texture, error.what(), account);
@@ -135,7 +135,7 @@ bool VolumeUnit::is_a_stack(const Run& run) {
 }
 
 void VolumeUnit::tidy() {
-  // Frames may end in other contexts than the one that draws.
+  // A frame may end in another context than the one that draws.
   const std::uint64_t frame = session_->ledger().frames();
   if (frame == tidied_in_frame_) return;
   settle_held();
@@ -172,7 +172,7 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
   ImageRequest& image = recognised.image;
   volume::RenderRequest& request = image.request;
   if (volume.colours.rounding.rounds()) round_samples(request);
-  // Whatever was right before was right of something else, where a ray caster has been measured anew.
+  // A ray caster that was measured anew starts at frame 0: earlier comparisons do not apply to it.
   if (volume.frames == 0) volume.verified.schedule.ask_for_whole();
   if (image.unproven) volume.verified.schedule.ask_for_several();
   volume.verified.schedule.begin(image.inputs, volume::footprint(request, request.region).pixels(),
@@ -190,7 +190,7 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
   const volume::FrameCounts counts = stages.presentation.show(
       service, {run.pipeline(), image, volume, compared_whole, capture ? &capture->polygons : nullptr}, check);
   run.shown = true;
-  // Where the image replaces what is there, it is drawn with the box, and that with its depth.
+  // An image that replaces pixels is drawn with the box, which writes its depth itself.
   if (!image.replaces_pixels) {
     if (const auto watched = stages.depth.settle(run, image.uncut_window.value_or(request.window),
                                                  volume.frames == 0, volume.depth_looked_at)) {
@@ -227,7 +227,7 @@ void VolumeUnit::settle_held() {
 }
 
 void VolumeUnit::depth_looked_at(const std::vector<GLuint>& volumes) {
-  // The next runs of these volumes write it.
+  // The next runs of these volumes write their depth.
   for (const GLuint texture : volumes) {
     if (KnownVolume* const volume = volumes_.find(texture)) volume->depth_looked_at = true;
   }
@@ -239,11 +239,11 @@ void VolumeUnit::depth_gone() {
 }
 
 void VolumeUnit::frame_ended(FrameEnd kind) {
-  // Another context may sample a texture that is attached here.
+  // Another context may sample a depth texture that is attached here.
   if (kind == FrameEnd::make_current) depth_looked_at(deferred_depth.take_textures(std::nullopt));
   if (kind != FrameEnd::swap && kind != FrameEnd::finish) return;
-  // After a swap the window's depth is undefined; OSMesa, which has none, keeps it in memory that the
-  // application may look at without a call.
+  // After a swap the window's depth is undefined. OSMesa has no swap, and keeps the depth in memory that the
+  // application may read without a call.
   if (kind != FrameEnd::swap)
     depth_looked_at(deferred_depth.take(0, 0));
   else if (!deferred_depth.take_cleared(0, std::nullopt).empty())

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The volume unit: recognises volumes in the application's drawing, and lets the render nodes draw them.
+// The volume unit: recognises volumes in the application's drawing, and has the render nodes draw them.
 //
-//   observe        draws are kept as a Run while they may be a volume                 observation/
-//   recognise      what the run is: a RecognisedRun of slices, or of a ray caster     recognition/
-//   classify       which colours its samples have                                     classification/, proxy/
-//   upload         its texels go to the nodes                                         upload/
-//   compose        an ImageRequest                                                    request/, slices/, proxy/
-//   verify         the nodes' image is compared with the application's own            verification/
-//   present        and put where the application would have drawn                     presentation/
+//   observe        keeps draws that may be a volume as a Run                         observation/
+//   recognise      makes a RecognisedRun of it: slices, or the box of a ray caster   recognition/
+//   classify       finds the colours of its samples                                  classification/, proxy/
+//   upload         sends its texels to the nodes                                     upload/
+//   compose        composes an ImageRequest                                          request/, slices/, proxy/
+//   verify         compares the nodes' image with the application's own              verification/
+//   present        puts it where the application would have drawn                    presentation/
 //
-// Runs through the textures of one volume wait between recognition and presentation for each other (merging/).
-// A Refusal on that way ends in the application's own drawing: the run is replayed as it was.
+// Runs that draw textures of one volume wait for each other between recognition and presentation (merging/).
+// When any of the stages throws a Refusal, the application's own draws are replayed unchanged.
 #pragma once
 
 #include <chrono>
@@ -51,16 +51,16 @@ class VolumeUnit final : public DrawObserver {
   bool substitutes(std::unique_ptr<Run>& run) override;
   Phase resting_phase() const override;
 
-  /// Made with the first draw that may be a volume, when the context is current.
+  /// Created at the first draw that may be a volume, when the context is current.
   Stages& stages();
-  /// Textured quads in a row are no volume until their geometry says so.
+  /// Returns whether the geometry of consecutive textured quads shows that they are slices of a volume.
   bool is_a_stack(const Run& run);
   bool shows(std::unique_ptr<Run>& run);
   void substitute(std::unique_ptr<Run>& run);
   void tidy();
   void show(Run& run, const Recognised& recognised, KnownVolume& volume, compositor::RenderService& service);
-  /// After a lost comparison: refutes that rounded samples explain it, where their image is wrong as well. The
-  /// application's own image is at hand, so that no other frame has to be drawn twice to learn this.
+  /// After a failed comparison: renders with rounded samples, and refutes rounding as its cause if that image
+  /// is wrong, too. The application's own image is still there, so that no further frame has to be drawn twice.
   void try_rounding(const Pipeline& pipeline, const ImageRequest& image, KnownVolume& volume,
                     compositor::RenderService& service);
   void forget_deleted_volumes();

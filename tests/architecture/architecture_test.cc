@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of the architecture, read from the source files: who may include whom, and what may lie in the
-// folders.
+// The rules of the architecture, checked in the source files: who may include whom, and what folders hold.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,18 +23,18 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::IsEmpty;
 
-/// Lowest first: a module may use itself and those before it.
+/// Lowest first: a module may include itself and those before it.
 constexpr std::array<std::string_view, 6> modules{"volume",      "compositor", "spu",
                                                   "interceptor", "apps",       "tests"};
 
-/// Folders of spu/, lowest first: a folder may include itself and those before it, so that there are no cycles.
+/// Folders of spu/, lowest first: a folder may include itself and those before it, so there are no cycles.
 constexpr auto spu_folders = std::to_array<std::string_view>({
 
     "spu/report", "spu", "spu/stream", "spu/window_system",
     // units
     "spu/driver", "spu/null", "spu/pass", "spu/perf", "spu/print", "spu/track", "spu/pack", "spu/unpack",
     "spu/trace", "spu/remote", "spu/tiles", "spu/plugin",
-    // the volume unit: what all its stages know
+    // the volume unit: shared by all its stages
     "spu/volume/program", "spu/volume/refusal", "spu/volume/context", "spu/volume/pipeline",
     "spu/volume/timing", "spu/volume/session", "spu/volume/texture", "spu/volume/budget",
     // its stages
@@ -43,7 +42,7 @@ constexpr auto spu_folders = std::to_array<std::string_view>({
     "spu/volume/program_check", "spu/volume/classification", "spu/volume/upload", "spu/volume/request",
     "spu/volume/slices", "spu/volume/proxy", "spu/volume/recognition", "spu/volume/known_volumes",
     "spu/volume/presentation", "spu/volume/merging", "spu/volume",
-    // what knows all units
+    // what uses all units
     "spu/registry", "spu/player", "spu/trim", "spu/dispatch"});
 
 constexpr std::uintmax_t max_source_bytes = 40'000;
@@ -60,7 +59,7 @@ std::size_t height_of(std::string_view module) {
   return static_cast<std::size_t>(std::find(modules.begin(), modules.end(), module) - modules.begin());
 }
 
-/// What stands between the quotes or brackets of the include lines.
+/// Returns the headers that the include lines name.
 std::vector<std::string> includes_of(const SourceFile& file) {
   static const std::regex line(R"re((?:^|\n)[ \t]*#[ \t]*include[ \t]*[<"]([^>"\n]+)[>"])re");
   std::vector<std::string> found;
@@ -70,7 +69,7 @@ std::vector<std::string> includes_of(const SourceFile& file) {
   return found;
 }
 
-/// "path includes header" for every include that `forbidden(file, header)` names.
+/// Returns "path includes header" for every include for which `forbidden(file, header)` is true.
 template <typename Forbidden>
 std::vector<std::string> includes_where(Forbidden forbidden) {
   std::vector<std::string> found;
@@ -124,7 +123,7 @@ std::string folder_of(const std::string& path) {
   return path.substr(0, path.rfind('/'));
 }
 
-/// By folder: the folders whose headers it includes, without itself, each with the first place.
+/// By folder: the other folders whose headers it includes, each with the first include found.
 std::map<std::string, std::map<std::string, std::string>> folders_included() {
   std::set<std::string> paths;
   for (const SourceFile& file : project_files()) paths.insert(file.path);
@@ -140,7 +139,7 @@ std::map<std::string, std::map<std::string, std::string>> folders_included() {
 }
 
 TEST(Architecture, NoFoldersIncludeEachOtherInACycle) {
-  // Folders that include none of those that are left are taken away until none is left, or only cycles.
+  // Folders that include none of those left are removed until no folder is left, or only cycles.
   auto left = folders_included();
   bool fewer = true;
   while (fewer) {
@@ -193,8 +192,7 @@ TEST(Architecture, VolumeAndCompositorKnowNoOpenGlStream) {
               IsEmpty());
 }
 
-// interceptor/ exports the same functions; the bundled viewer and the benchmark of calls stand for
-// applications.
+// interceptor/ exports the same functions; the bundled viewer and the benchmark of calls act as applications.
 TEST(Architecture, ContextsWithoutAWindowAreMadeInOneFolder) {
   EXPECT_THAT(includes_where([](const SourceFile& file, const std::string& header) {
                 return (header.starts_with("EGL/") || header == "GL/osmesa.h") &&
@@ -224,7 +222,7 @@ TEST(Architecture, LoggingKnowsNoOtherFolder) {
               IsEmpty());
 }
 
-// Under a program with more rights than its user, the user's environment is not to be believed.
+// In a program with more rights than its user, the user's environment cannot be trusted.
 TEST(Architecture, WhatLivesInAViewerReadsItsEnvironmentSecurely) {
   const std::regex insecure(
       "(^|[^_a-z])"
@@ -255,7 +253,7 @@ TEST(Architecture, NoSourceFileIsTooLongToRead) {
   }
 }
 
-// The patterns are put together here so that this file does not contain what it looks for.
+// The patterns are composed here, so that this file does not match them.
 TEST(Architecture, HoldsNoGeneratedFile) {
   const std::regex mark(
       std::string("(do not ") + "edit|generated " + "by|@" + "generated|auto-?" + "generated)",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words that the glossary (docs/glossary.md) has replaced: they must not come back, in code, documents or help.
+// Words that the glossary (docs/glossary.md) has replaced must not come back, in code, documents or help.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,15 +16,15 @@ namespace understudy::testing {
 namespace {
 
 struct FormerWord {
-  std::string_view stem;  ///< in lower case: only lines that have it are looked at, for the sake of speed
+  std::string_view stem;  ///< in lower case: only lines that contain it are searched, for speed
   const char* pattern;
   const char* now;
-  std::string_view files = "";  ///< paths, between spaces, where it is something else ...
+  std::string_view files = "";  ///< paths, between spaces, where it means something else ...
   const char* because = "";     ///< ... and what
 };
 
-/// At least one for every row of the glossary. Where the plain word stays legal in another meaning (stage,
-/// strip, table, home, note, body, room), these are the identifiers, options and phrases that are gone.
+/// At least one for every row of the glossary. Where the plain word may still be used in another meaning
+/// (stage, strip, table, home, note, body, room), these are the identifiers, options and phrases that are gone.
 constexpr FormerWord former_words[] = {
     {"picture", "[Pp]icture|PICTURE", "image"},
     {"stage", "StageLink|stage_link|[Ss]tage_?[Pp]rotocol|--stage|stage-opengl|stage_opengl|STAGE_OPENGL",
@@ -105,7 +105,7 @@ constexpr FormerWord former_words[] = {
     {"play", "play the part", "plain sentences"},
 };
 
-/// The table of aliases, its test, the glossary, and this.
+/// Files that must contain former words: the table of aliases, its test, the glossary, and this file.
 constexpr std::string_view tables_of_former_words =
     " spu/former_names.h spu/former_names.cc tests/spu/former_names_test.cc docs/glossary.md"
     " tests/architecture/former_words_test.cc ";
@@ -126,7 +126,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// "path:line: found" for every line of `file` with the word; `lowered` is its text.
+/// Returns "path:line: found" for every line of `file` with the word; `lowered` is the text in lower case.
 std::vector<std::string> lines_with(const FormerWord& word, const std::regex& pattern, const SourceFile& file,
                                     const std::string& lowered) {
   std::vector<std::string> found;

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How many objects are compiled again when a header is touched: header_users.py BUILD_FOLDER [--check]
+"""How many objects are compiled again when a header changes: header_users.py BUILD_FOLDER [--check]
 
-Reads what ninja has learnt about the last build. Prints the headers that most objects read; with --check, exits with 1
-when a header has more readers than it may have.
+Reads what ninja has recorded about the last build. Prints the headers that most objects include; with --check, exits
+with 1 if more objects include a header than its limit allows.
 """
 
 import collections
@@ -13,14 +13,14 @@ import sys
 USUAL_LIMIT = 60
 NAMED_LIMIT = 200
 
-# At most ten: the words of volume/, a few lines each, that every request, image and message is made of.
+# At most ten: basic types of volume/, a few lines each, of which every request, image and message consists.
 NAMED = {f"volume/{name}.h" for name in (
     "blending_operator", "classification", "description", "rect", "rgba", "texel_box", "texel_type", "texture_filter",
     "texture_space", "volume_id")}
 
 
 def users_of_headers(build, root):
-    """Readers of every header of the project, by its path."""
+    """Counts the objects that include each header of the project, by path."""
     listing = subprocess.run(["ninja", "-C", build, "-t", "deps"], capture_output=True, text=True, check=True).stdout
     users = collections.Counter()
     for block in listing.split("\n\n"):

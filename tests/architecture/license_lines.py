@@ -1,4 +1,4 @@
-"""Puts the licence's line where it is missing: license_lines.py. Every source, header, script and CMake file has one."""
+"""Adds the licence line where it is missing: license_lines.py. Every source, header, script and CMake file has one."""
 
 import pathlib
 import subprocess
@@ -16,7 +16,7 @@ def comment_of(path):
 
 def with_line(text, comment):
     lines = text.split("\n")
-    # A script's interpreter and a page's type must come first.
+    # A script's interpreter line and a page's doctype must come first.
     at = 1 if lines[0].startswith(("#!", "<!")) else 0
     return "\n".join(lines[:at] + [comment.format(LINE)] + lines[at:])
 

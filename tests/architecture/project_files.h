@@ -8,11 +8,11 @@
 namespace understudy::testing {
 
 struct SourceFile {
-  std::string path;  ///< from the project's root
+  std::string path;  ///< relative to the project's root
   std::string text;
 };
 
-/// Everything that belongs to the project: hidden folders, build folders and results do not.
+/// All files of the project; hidden folders, build folders and results do not belong to it.
 const std::vector<SourceFile>& project_files();
 
 }  // namespace understudy::testing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the balancers decide, for costs and speeds that are known.
+// Decisions of the balancers for known costs and speeds.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ using volume::Partition;
 using volume::TexelBox;
 using volume::testing::describe;
 
-/// A machine that draws exactly as its costs say, but for noise, and counts how planes move.
+/// Ranks that draw exactly as their costs predict, except for noise; counts how planes move.
 struct Group {
   volume::VolumeDescription description = describe({257, 257, 257}, volume::TexelType::u8);
   TexelBox lattice = volume::cell_lattice(description).box();
@@ -53,7 +53,7 @@ struct Group {
     for (double& value : costs.values()) value = uniform(random) < 0.3 ? 1000 : 4;
   }
 
-  /// One image; how far the slowest rank's time lies over the mean, without noise.
+  /// Draws one image; returns the slowest rank's time relative to a perfect balance, without noise.
   double draw(Balancer& balancer) {
     const Partition next = balancer.decide({partition, lattice, work, costs, ms_per_block, most_blocks});
     for (std::size_t i = 0; i < next.splits.size(); ++i) {
@@ -107,7 +107,7 @@ TEST(Balance, PredictingEvensOutASlowRankInTwoMovesAndThenRests) {
     for (int image = 0; image < 6; ++image) group.draw(*balancer);
     const double balanced = group.draw(*balancer);
     const int moved = group.moves - before;
-    // Two images to believe it, one or two decisions for every split.
+    // Two images until the measurements count, then one or two decisions for every split.
     EXPECT_LT(balanced, 1.2) << ranks << " ranks";
     EXPECT_LT(balanced, 0.6 * unbalanced) << ranks << " ranks";
     EXPECT_LE(moved, 2 * (ranks - 1)) << ranks << " ranks";
@@ -217,7 +217,7 @@ TEST(Balance, MullerMovesOneSliceAtATimeAndKeepsTheInequality) {
     EXPECT_LE(group.largest_step, 8);
     EXPECT_LT(after, before) << ranks << " ranks";
   }
-  // Two ranks whose difference is what one slice takes, or a little more.
+  // Two ranks whose times differ by what one slice costs, or by a little more.
   Group group(2, seed);
   const auto balancer = muller_balancer();
   const double all_blocks = 32 * 32 * 32, slice = 32 * 32;
@@ -244,8 +244,8 @@ TEST(Balance, MullerHesitatesToGoBack) {
   };
   const int middle = group.partition.splits[0].cut;
   EXPECT_EQ(decide(100, 50), middle - 8);
-  EXPECT_EQ(decide(50, 100), middle - 8);   // that would be back
-  EXPECT_EQ(decide(100, 50), middle - 16);  // on it goes
+  EXPECT_EQ(decide(50, 100), middle - 8);   // this would be back
+  EXPECT_EQ(decide(100, 50), middle - 16);  // this is on
 }
 
 TEST(Balance, DecisionsAreTheSameOnEveryRank) {
@@ -342,13 +342,13 @@ TEST(BlockCache, ForgetsTheLeastRecentAndWhatHasChanged) {
   EXPECT_EQ(cache.take({1, 0, 0}), packed(40, 2));
   EXPECT_EQ(cache.take({1, 0, 0}), std::nullopt);
   EXPECT_EQ(cache.bytes(), entry + 40);
-  cache.put({2, 0, 0}, packed(10, 4));  // again
+  cache.put({2, 0, 0}, packed(10, 4));  // replaces the first
   EXPECT_EQ(cache.bytes(), entry + 10);
   cache.put({5, 5, 5}, packed(10, 5));
   cache.drop({{0, 0, 0}, {3, 3, 3}});
   EXPECT_FALSE(cache.holds({2, 0, 0}));
   EXPECT_TRUE(cache.holds({5, 5, 5}));
-  cache.put({0, 0, 0}, packed(entry + 101, 1));  // more than it may hold
+  cache.put({0, 0, 0}, packed(entry + 101, 1));  // more than the cache may hold
   EXPECT_EQ(cache.bytes(), 0U);
   cache.put({0, 0, 0}, packed(1, 1));
   cache.clear();
@@ -358,7 +358,7 @@ TEST(BlockCache, ForgetsTheLeastRecentAndWhatHasChanged) {
 TEST(ExpectedSamples, AreThoseThatAreTaken) {
   using namespace volume::testing;
   using volume::multiply;
-  // Nothing of it is empty or opaque: what lies in a block is taken.
+  // Nothing is empty or opaque: every sample in a block is taken.
   const Texture texture = sampled(describe({65, 49, 57}, volume::TexelType::u8), constant_field(0.5));
   const volume::BrickStore store = filled(texture);
   for (const bool on_steps : {false, true})

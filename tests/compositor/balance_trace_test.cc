@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole runs under each balancer, their samples really cast and counted: what the benchmark shows on volumes
-// from files, on fields that need none.
+// Whole runs with each balancer, whose samples are really cast and counted: what the benchmark shows with
+// volumes from files, with fields that need no file.
 #include "apps/bench/balance_trace.h"
 
 #include <gmock/gmock.h>
@@ -54,7 +54,7 @@ TraceScene scene_of(const volume::testing::ScalarField& field,
   scene.request = [vary = std::move(vary), description = scene.description](int image) {
     volume::OrbitCamera camera;
     camera.azimuth = 30 + 0.5 * image;
-    volume::RenderRequest settings;  // what is to be varied beside the camera
+    volume::RenderRequest settings;  // holds what is varied besides the camera
     settings.classification = table(0.15, 0.05F);
     vary(image, camera, settings);
     volume::RenderRequest request = volume::orbit_request(description, {1, 1, 1}, camera, 128, 128, 1);
@@ -74,8 +74,8 @@ struct Sums {
   TraceSums still, muller, predicted;
 };
 
-/// Plays all three, prints what came out, and expects of the predicting one what it promises everywhere: that
-/// it takes less time than the others, or at least no more than `of_mullers` times that of Mueller's.
+/// Plays all three balancers, prints the results, and checks what the predicting one promises everywhere: it
+/// takes less time than the others, or at most `of_mullers` times that of Mueller's.
 Sums play(const char* name, TraceScene scene, double of_mullers = 1) {
   TracePlayer player(std::move(scene));
   Sums sums;
@@ -111,7 +111,7 @@ TEST(BalanceTrace, RankSlowedToAQuarterUnderSurfacesVolumesAndLight) {
                                   },
                                   true));
   EXPECT_LT(surface.predicted.mean_ms, 0.8 * surface.still.mean_ms);
-  // Of fourteen layers one is a fourteenth of the work: creeping by one is as good here as knowing where to go.
+  // One of fourteen layers is a fourteenth of the work: moving by one is as good here as a prediction.
   const Sums bare = play("slowed, volume",
                          scene_of(
                              ball, [](int, volume::OrbitCamera&, volume::RenderRequest&) {}, true),
@@ -126,7 +126,7 @@ TEST(BalanceTrace, RankSlowedToAQuarterUnderSurfacesVolumesAndLight) {
 }
 
 TEST(BalanceTrace, TransferFunctionSwitched) {
-  // Layers: one table shows those below, the other those above.
+  // Layers: one transfer function shows the lower ones, the other the upper ones.
   const auto rising = volume::testing::linear_field({0.1, 0.05, 0.8}, 0);
   TraceScene scene = scene_of(rising, [](int image, volume::OrbitCamera&, volume::RenderRequest& request) {
     volume::TransferFunction only = table(0, 0.02F);

@@ -85,7 +85,7 @@ TEST(Blend, FogOfAThousandThinLayersAddsUp) {
   EXPECT_NEAR(sum[3], 1e-6, 1e-10);
 }
 
-/// Layers [first, last), divided anywhere, blended as the two halves are.
+/// Blends layers [first, last): divides them anywhere, and blends the two halves.
 std::vector<float> blended_as_a_tree(Operator op, const std::vector<std::vector<float>>& layers,
                                      std::size_t first, std::size_t last, std::mt19937& random) {
   if (last - first == 1) return layers[first];
@@ -118,7 +118,7 @@ TEST(Blend, AnyTreeOfUpTo1024ImagesGivesTheProductInDouble) {
               product[c] = expected(op, product[c], double(layers[i][p + c]), alpha);
           }
           for (std::size_t c = 0; c < 4; ++c) {
-            // Sums are as exact as they are large.
+            // The error of a sum grows with the sum.
             const double unit = op == Operator::add ? std::max(1.0, product[c]) : 1;
             worst = std::max(worst, std::abs(double(image[p + c]) - product[c]) / unit);
           }

@@ -25,7 +25,7 @@ Deadline soon() {
   return Clock::now() + std::chrono::seconds(20);
 }
 
-// A broker whose steps the test takes itself, and peers in the same thread.
+// A broker that the test steps, with peers in the same thread.
 class BrokerTest : public ::testing::Test {
  protected:
   std::unique_ptr<Connection> connect() { return connect(path_); }
@@ -45,7 +45,7 @@ class BrokerTest : public ::testing::Test {
   void step() {
     for (int i = 0; i < 5; ++i) broker_->step(std::chrono::milliseconds(0));
   }
-  // What the launcher sends to a node group: the descriptor of an application.
+  // Receives what the launcher sends to a node group: the descriptor of an application.
   static FileDescriptor handed_over(Connection& nodes) {
     Message message = nodes.receive(soon());
     EXPECT_EQ(message.type, LauncherMessage::client);
@@ -136,7 +136,7 @@ TEST_F(BrokerTest, HoldsApplicationsUntilANodeGroupIsThereAndHandsThemOver) {
   EXPECT_EQ(broker_->ranks(), 7);
   EXPECT_EQ(broker_->clients_waiting(), 0U);
   EXPECT_EQ(broker_->clients_handed_over(), 2U);
-  // From now on the two talk directly, without the broker's help.
+  // From now on the two communicate without the broker.
   Connection served(handed_over(*group), service_protocols);
   served.send(LauncherMessage::accepted, 1, encode(Hello{7}), soon());
   EXPECT_EQ(decode_hello(first->receive(soon()).payload).ranks, 7);
@@ -251,7 +251,7 @@ TEST_F(BrokerTest, AnApplicationThatLeavesWhileItWaitsIsForgotten) {
   leaving.reset();
   step();
   EXPECT_EQ(broker_->clients_waiting(), 0U);
-  EXPECT_TRUE(said_.empty());  // nothing wrong with that
+  EXPECT_TRUE(said_.empty());  // this is no error
 }
 
 TEST_F(BrokerTest, TurnsApplicationsAwayWithTheReasonUntilAGroupComes) {

@@ -21,7 +21,7 @@ using volume::TexelBox;
 
 constexpr int ranks = 8;
 
-/// A volume whose blocks show something in one corner.
+/// A volume whose blocks show something in one corner only.
 struct Corner {
   volume::VolumeDescription description = volume::testing::describe({257, 193, 129}, volume::TexelType::u8);
   TexelBox lattice = volume::cell_lattice(description).box();
@@ -31,7 +31,7 @@ struct Corner {
   double ms_per_block = 0;
   std::vector<std::size_t> most_blocks;
 
-  /// Costs lie below this part of each axis.
+  /// Sets costs below this part of each axis only.
   void show_below(double part) {
     const auto counts = costs.counts();
     for (int z = 0; z < counts[2]; ++z)
@@ -42,7 +42,7 @@ struct Corner {
         }
   }
 
-  /// Of samples, the busiest rank's over the mean.
+  /// Samples of the busiest rank, relative to the mean.
   double busiest() const {
     const CostSums sums(costs);
     double most = 0;

@@ -37,7 +37,7 @@ struct Scene {
   std::vector<Rect> footprints;
 };
 
-// Ranks with footprints of all kinds: none, one pixel, thin, large, far apart or on top of each other.
+// Ranks with footprints of all kinds: none, one pixel, thin, large, far apart or overlapping.
 Scene random_scene(Operator op, int ranks, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(0, 1);
@@ -61,7 +61,7 @@ Scene random_scene(Operator op, int ranks, unsigned seed) {
   return scene;
 }
 
-// Front to back in double precision, one pixel after the other.
+// Compares with blending front to back in double precision, pixel by pixel.
 double largest_error(const Scene& scene, const Image& image) {
   double worst = 0;
   for (int y = image.rect.y; y < image.rect.y + image.rect.height; ++y)
@@ -85,7 +85,7 @@ double largest_error(const Scene& scene, const Image& image) {
   return worst;
 }
 
-// Counts the pixels that really travel.
+// Counts the bytes and messages that are really sent.
 class CountingCommunicator : public testing::ForwardingCommunicator {
  public:
   CountingCommunicator(Communicator& communicator, std::atomic<std::uint64_t>& bytes,
@@ -193,7 +193,7 @@ TEST(DirectSend, OneContributingRankMeansNoCompositing) {
     std::iota(scene.images[only].rgba.begin(), scene.images[only].rgba.end(), 0.0F);
     const Result result = exchanged(scene, Algorithm::direct_send);
     EXPECT_EQ(result.image.rgba, scene.images[only].rgba);
-    EXPECT_EQ(result.messages, only == 0 ? 0 : 1);  // to rank 0, as it is
+    EXPECT_EQ(result.messages, only == 0 ? 0 : 1);  // to rank 0, unchanged
   }
 }
 
@@ -222,7 +222,7 @@ TEST(DirectSend, BytesFollowTheFootprintsAndNotTheImage) {
 }
 
 TEST(DirectSend, HoldsForManyThinLayersInOnePlace) {
-  // One pixel or two of every rank, all in the same place.
+  // One or two pixels of every rank, all in the same place.
   Scene scene;
   std::mt19937 random(9);
   std::uniform_real_distribution<float> thin(0, 0.01F);
@@ -238,11 +238,11 @@ TEST(DirectSend, HoldsForManyThinLayersInOnePlace) {
   EXPECT_LE(error, 2e-6);
 }
 
-/// By how much an image may lie off whose values are composed of so many images and were rounded on each of
-/// so many travels: see settings.h. Sums are as exact as they are large.
+/// Returns the largest error of an image composed of `images` images, whose values were rounded each of
+/// `travels` times they were sent: see transport/pixel_width.h. The error of a sum grows with the sum.
 double bound_of(Layout layout, Operator op, int images, int travels) {
   const double largest = op == Operator::add ? images : 1;
-  // Under a maximum or minimum one image's value is shown; else the errors of all add up.
+  // Under a maximum or minimum, a single image's value is shown; otherwise all errors add up.
   const int roundings = op == Operator::over || op == Operator::add ? images + travels : travels;
   const double in_floats = 1e-6 * largest;
   switch (layout) {
@@ -270,7 +270,7 @@ TEST(Exchange, EveryAlgorithmLayoutAndOperatorGivesTheProductInDouble) {
             const unsigned seed = 1000 * unsigned(ranks) + 100 * unsigned(op) + trial;
             SCOPED_TRACE(::testing::Message() << name_of(Algorithm(a)) << " seed " << seed);
             Scene scene = random_scene(op, ranks, seed);
-            // Bytes end at 1, sums do not.
+            // Bytes cannot exceed 1, sums can.
             if (op == Operator::add && layout == Layout::rgba8)
               for (Image& image : scene.images)
                 for (float& value : image.rgba) value /= float(ranks);
@@ -335,7 +335,7 @@ TEST(Exchange, MessagesAndPixelsAreThoseOfItsCost) {
       const ExchangeCost counted = cost(plan, Layout::rgba32f, {});
       const Result sparing = exchanged(scene, plan);
       EXPECT_EQ(std::uint64_t(sparing.messages), counted.messages);
-      // What nothing is gained by packing may be longer for it.
+      // Messages that cannot be compressed may get longer by packing.
       EXPECT_LE(sparing.bytes_counted,
                 most_packed_bytes(counted.pixels_sent) + 2 * head_bytes * counted.messages);
       plan.clear_pixels_travel = true;
@@ -390,7 +390,7 @@ TEST(Exchange, PartsAreGatheredDirectlyFromRanksThatReachTheImage) {
           const unsigned seed = 1000 * unsigned(ranks) + 100 * unsigned(op) + trial;
           SCOPED_TRACE(::testing::Message() << name_of(Algorithm(a)) << " seed " << seed);
           Scene scene = random_scene(op, ranks, seed);
-          if (trial == 0)  // no pixel is untouched, so that all of every rectangle travels
+          if (trial == 0)  // no pixel is untouched, so all pixels of every rectangle are sent
             for (Image& image : scene.images)
               for (float& value : image.rgba) value = 0.5F + value / 4;
           Schedule plan = schedule_of(scene, Algorithm(a));
@@ -400,7 +400,7 @@ TEST(Exchange, PartsAreGatheredDirectlyFromRanksThatReachTheImage) {
           for (int rank = 0; rank < ranks; ++rank)
             reached_by.push_back(trial < 2 || (seed + unsigned(rank)) % 3 > 0);
           write_gathered(plan, reached_by);
-          // What was there before must not shine through.
+          // What the memory held before must not show.
           std::vector<float> memory(4 * plan.whole.pixels(), -7);
           std::atomic<std::uint64_t> bytes = 0;
           std::atomic<int> messages = 0;
@@ -474,8 +474,8 @@ TEST(Exchange, AutoMovesLeastInAllWhereRanksShareOneProcessor) {
 }
 
 TEST(Exchange, CostOfAFullImageIsThatOfThePapers) {
-  // Magallon, Hopf, Ertl 2001, section 3.2: serial N - 1 images to one rank; direct-send (N - 1)/N of a
-  // image from each rank, and as much again in regions to rank 0.
+  // Magallon, Hopf, Ertl 2001, section 3.2: serial sends N - 1 images to one rank; direct-send sends (N - 1)/N
+  // of an image from each rank, and as much again in regions to rank 0.
   constexpr int ranks = 8;
   constexpr std::uint64_t image = 256 * 256;
   std::vector<Rank> order(ranks);
@@ -489,12 +489,12 @@ TEST(Exchange, CostOfAFullImageIsThatOfThePapers) {
   const std::uint64_t tiles_gathered = image * (ranks - 1) / ranks;
   EXPECT_EQ(of(Algorithm::direct_send).pixels_sent, (ranks - 1) * image + tiles_gathered);
   EXPECT_EQ(of(Algorithm::direct_send).messages, ranks * (ranks - 1) + ranks - 1);
-  // Halves, quarters, eighths: as many pixels, and 3 messages of each rank instead of 7.
+  // Halves, quarters, eighths: as many pixels, in 3 messages from each rank instead of 7.
   EXPECT_EQ(of(Algorithm::binary_swap).pixels_sent, (ranks - 1) * image + tiles_gathered);
   EXPECT_EQ(of(Algorithm::binary_swap).messages, ranks * 3 + ranks - 1);
 }
 
-// Keeps the length of every message that one rank sends, and of those it receives.
+// Records the length of every message that a rank sends, and the bytes that it receives.
 class RecordingCommunicator : public testing::ForwardingCommunicator {
  public:
   struct Sent {
@@ -514,7 +514,7 @@ class RecordingCommunicator : public testing::ForwardingCommunicator {
   std::uint64_t received = 0;
 };
 
-// Plays the schedule, and compares each message with what was counted beforehand.
+// Executes the schedule, and compares each message with the one counted beforehand.
 void expect_counted(const Scene& scene, const Schedule& plan, Layout layout,
                     const std::vector<bool>& reached_by = {}) {
   std::vector<PixelMask> masks;
@@ -553,14 +553,14 @@ TEST(CountedExchange, EqualsEveryMessageOfEveryAlgorithmLayoutOperatorAndRankCou
       for (const int ranks : numbers_of_ranks())
         for (const Operator op : all_operators)
           for (unsigned trial = 0; trial < 3; ++trial) {
-            // Narrow numbers follow the same masks: of them one kind for each number of ranks will do.
+            // Narrow numbers follow the same masks: one trial for each number of ranks is enough.
             if (layout != Layout::rgba32f && trial != unsigned(ranks) % 3) continue;
             const unsigned seed = 1000 * unsigned(ranks) + 100 * unsigned(op) + trial;
             SCOPED_TRACE(::testing::Message() << name_of(Algorithm(a)) << " seed " << seed);
             Scene scene = random_scene(op, ranks, seed);
             for (Image& image : scene.images)
               for (std::size_t p = 0; p < image.rgba.size(); p += 4) {
-                // What is touched, and how much of it; never so faint that a byte would round it away.
+                // Which pixels are touched; never so faintly that bytes round them to untouched ones.
                 const bool touched = trial == 0 || (trial == 1 ? image.rgba[p + 3] > 0.5F : p / 4 % 11 == 0);
                 for (std::size_t c = p; c < p + 4; ++c)
                   image.rgba[c] = touched ? 0.25F + image.rgba[c] / 2 : volume::neutral_value(op);
@@ -619,7 +619,7 @@ TEST(ExchangeSettings, KnowTheNamesThatUsersGive) {
   EXPECT_FALSE(settings.packed);
 }
 
-/// What a message says of its rectangle, over pixels that are all `blank`.
+/// Returns the rectangle of a message, over pixels that are all `blank`.
 Image read(const PixelMessage& message, const Rect& rect, Layout layout, float blank) {
   Image image(rect);
   std::ranges::fill(image.rgba, blank);
@@ -635,14 +635,14 @@ PixelMessage arrived(PixelMessage message) {
   return message;
 }
 
-// Bit for bit, whatever the numbers: also those that an image should not hold.
+// Bit for bit, for any numbers, including those that an image should not contain.
 TEST(PixelMessages, FloatsArriveAsTheyWere) {
   std::mt19937 random(31);
   for (const Operator op : all_operators)
     for (int trial = 0; trial < 300; ++trial) {
       Image image({-2, 5, 1 + int(random() % 300), 1 + int(random() % 9)});
       std::ranges::fill(image.rgba, volume::neutral_value(op));
-      // Spans and holes of any length, of numbers that are alike, or any.
+      // Spans and holes of any length, with similar or arbitrary numbers.
       const bool alike = random() % 2 == 0;
       for (std::size_t at = random() % 40; at < image.rgba.size() / 4; at += random() % 40)
         for (std::size_t left = random() % 120; left > 0 && at < image.rgba.size() / 4; --left, ++at)
@@ -703,7 +703,7 @@ TEST(PixelMessages, ThatDoNotFitTheirRectangleAreRefused) {
         arrived.received() = bytes.size();
         return read(arrived, image.rect, layout, 0);
       };
-      // 0, 1/2 and 1: a half has them, a byte has all but one.
+      // 0, 1/2 and 1: halves represent all three, bytes all but 1/2.
       EXPECT_EQ(decode(whole).rgba == image.rgba, layout != Layout::rgba8);
       for (std::size_t length = 0; length < whole.size(); ++length)
         EXPECT_THROW(decode({whole.begin(), whole.begin() + std::ptrdiff_t(length)}), RankLost) << length;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes wrong with real nodes, and what becomes of it: the right image or none, one line, and nothing
-// left.
+// Failures of real nodes, and what follows: the right image or none, one log line, and nothing left behind.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -38,7 +37,7 @@ Deadline soon() {
   return Clock::now() + std::chrono::seconds(20);
 }
 
-// A launcher and a group of real nodes. When all of it has ended, nothing may be left.
+// A launcher and a group of real nodes. When both have ended, nothing may be left.
 class Faults : public ::testing::Test {
  protected:
   void TearDown() override {
@@ -57,14 +56,14 @@ class Faults : public ::testing::Test {
   std::unique_ptr<RenderService> connect(const Patience& patience = {}) {
     return remote_render_service(path_, patience);
   }
-  // An application without manners, which rank 0 has taken in.
+  // An application that need not obey the protocol, accepted by rank 0.
   std::unique_ptr<Connection> raw_client() {
     auto result = std::make_unique<Connection>(connect_to(path_, soon()), service_protocols);
     result->send(LauncherMessage::hello_client, 1, Bytes{}, soon());
     EXPECT_EQ(result->receive(soon()).type, LauncherMessage::accepted);
     return result;
   }
-  // By the place in the order of their start, which is that of ranks.
+  // Ranks by the order of their start, which is that of ranks.
   pid_t rank(std::size_t number) const {
     std::vector<pid_t> ranks = group_->ranks();
     std::ranges::sort(ranks);
@@ -118,7 +117,7 @@ TEST_P(StoppedRank, ForGoodIsNoticedByTheLauncher) {
   EXPECT_TRUE(launcher_->wait_for_loss());
   EXPECT_THAT(launcher_->said(), Contains(HasSubstr("hang")));
   EXPECT_EQ(launcher_->said().size(), 1U);
-  // What the launcher does with such a group.
+  // As the launcher does with such a group.
   for (const pid_t pid : group_->ranks()) ::kill(pid, SIGKILL);
 }
 
@@ -156,7 +155,7 @@ TEST_F(Faults, ApplicationsThatLeaveInTheMidstOfAnImageDisturbNobody) {
     const ImageBuffer memory = ImageBuffer::create(160 * 120 * 16);
     ask(NodeMessage::image_buffer, encode_size(160 * 120 * 16), memory.fd());
     client->send(NodeMessage::render, 3, encode(request_), soon());
-    // And goes, without the image.
+    // The application leaves without the image.
   }
   expect_right_image(*linked);
   EXPECT_TRUE(eventually([&] { return descriptors_of_rank_0() == descriptors; })) << descriptors_of_rank_0();
@@ -178,7 +177,7 @@ TEST_F(Faults, MessagesThatEndTooEarlyDisturbNobody) {
     const auto client = raw_client();
     ASSERT_EQ(::send(client->fd(), message.data(), length, MSG_NOSIGNAL), ssize_t(length));
   }
-  // A whole message whose content ends too early is answered.
+  // A complete message whose content ends too early is answered.
   const auto senseless = raw_client();
   senseless->send(NodeMessage::render, 2, Bytes(request).first(request.size() / 2 / 8 * 8), soon());
   EXPECT_EQ(senseless->receive(soon()).type, LauncherMessage::refused);
@@ -190,7 +189,7 @@ TEST_F(Faults, AnotherVersionOfTheProtocolIsTurnedAway) {
   start(2);
   MessageHeader header{.type = LauncherMessage::hello_client};
   ++header.type.version;
-  // By the launcher, in one line, and by rank 0.
+  // Refused by the launcher, with one line, and by rank 0.
   const Connection pending(connect_to(path_, soon()), service_protocols);
   ASSERT_GT(::send(pending.fd(), &header, sizeof header, MSG_NOSIGNAL), 0);
   EXPECT_TRUE(eventually([&] { return launcher_->said().size() == 1; }));
@@ -206,7 +205,7 @@ TEST_F(Faults, AnotherVersionOfTheProtocolIsTurnedAway) {
 }
 
 TEST_F(Faults, AThousandConnectionsAtOnceLeaveTheFirstApplicationItsImages) {
-  // Both ends of all of them are in this process.
+  // Both ends of all connections are in this process.
   rlimit descriptors{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &descriptors), 0);
   if (descriptors.rlim_max < 4096) GTEST_SKIP() << "this process may not open 4,096 files (ulimit -n)";
@@ -225,7 +224,7 @@ TEST_F(Faults, AThousandConnectionsAtOnceLeaveTheFirstApplicationItsImages) {
       try {
         crowd.back()->send(LauncherMessage::hello_client, 1, Bytes{}, soon());
       } catch (const ConnectionLost&) {
-        // It was refused before it had said what it is; the reason is there to be read.
+        // It was refused before it had sent its hello; the reason can be received.
       }
     }
     expect_right_image(*linked);
@@ -252,7 +251,7 @@ TEST_F(Faults, ImagesThatAreTooLargeOrEmptyAreRefusedOrEmpty) {
   volume::RenderRequest request = request_;
   request.window = request.viewport = {0, 0, 16384, 16384};
   EXPECT_THROW(linked->render(request), RequestRefused);
-  // Rank 0 does not rely on that.
+  // Rank 0 checks this itself, too.
   const auto client = raw_client();
   client->send(NodeMessage::render, 2, encode(request), soon());
   const Message answer = client->receive(soon());
@@ -270,7 +269,7 @@ TEST_F(Faults, ImagesThatAreTooLargeOrEmptyAreRefusedOrEmpty) {
       }
     }
   }
-  // Nobody has anything to show: the volume lies beside the window.
+  // No rank has anything to show: the volume lies beside the window.
   request = request_;
   // x becomes x + 3 w.
   for (std::size_t column = 0; column < 4; ++column)

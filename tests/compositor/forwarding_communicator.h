@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Communicator with another one behind it: tests change single functions.
+// A Communicator that forwards all calls to another one: tests override single functions.
 #pragma once
 
 #include "compositor/exchange/communicator.h"
@@ -29,7 +29,7 @@ class ForwardingCommunicator : public Communicator {
   ControlMessage wait_for_control_message() override { return communicator_.wait_for_control_message(); }
   [[noreturn]] void abandon(const std::string& why) override {
     communicator_.abandon(why);
-    throw RankLost(why);  // never reached; gcc does not believe a virtual function that it will not return
+    throw RankLost(why);  // never reached; gcc does not trust [[noreturn]] on virtual functions
   }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether images on paper are those of the ray caster, and time follows what its header says.
+// Whether modelled images are those of the ray caster, and times follow the model in the header.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using compositor::Gather;
 using compositor::Layout;
 using volume::testing::Texture;
 
-/// No two extents alike, none a multiple of a block; every value shows something.
+/// No two extents are equal, none is a multiple of a block; every value shows something.
 struct DenseScene {
   Texture texture;
   std::vector<volume::RenderRequest> requests;  ///< samples on steps, and on planes
@@ -96,9 +96,9 @@ TEST(FrameTime, OfTheSlowestRankWhereEachHasAMachine) {
 }
 
 TEST(FrameTime, DividesWorkByTheCoresThatRanksShare) {
-  EXPECT_DOUBLE_EQ(render_time({8}, 2), 4);            // with a thread on each core
+  EXPECT_DOUBLE_EQ(render_time({8}, 2), 4);            // one thread on each core
   EXPECT_DOUBLE_EQ(render_time({6, 6, 6, 6}, 2), 12);  // all cores busy to the end
-  EXPECT_DOUBLE_EQ(render_time({10, 2}, 2), 10);       // two threads, of which one has more to do
+  EXPECT_DOUBLE_EQ(render_time({10, 2}, 2), 10);       // two threads, of which one has more work
   // Three share two cores until the first two end after 3, with 2 of the third's 6 done; it goes on alone.
   EXPECT_DOUBLE_EQ(render_time({2, 2, 6}, 2), 3 + 4);
 }
@@ -119,7 +119,7 @@ TEST(FrameTime, OfMessagesIsThatOfLogGp) {
   costs.overhead = 10;
   EXPECT_DOUBLE_EQ(exchange_time(Algorithm::serial, 8, costs), 10 + 1000 + 7 * 10);
   costs.overhead = 0;
-  costs.per_byte = 1;  // seven messages come in by one line
+  costs.per_byte = 1;  // seven messages arrive over one connection
   EXPECT_DOUBLE_EQ(exchange_time(Algorithm::serial, 8, costs), 1000 + 7 * bytes);
   costs.per_byte = 0;
   costs.gap = 50;

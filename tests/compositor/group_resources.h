@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a process and those that it starts may leave behind: counted before and after.
+// Resources that a process and those that it starts may leave behind, counted before and after.
 #pragma once
 
 #include <unistd.h>
@@ -15,16 +15,16 @@
 namespace understudy::compositor::testing {
 
 struct ProcessState {
-  char state = 0;  ///< 'Z': it has ended and nobody asked how
+  char state = 0;  ///< 'Z': it has ended and nobody has waited for it
   pid_t parent = 0;
 };
 
-/// Of the process with this folder under /proc.
+/// Reads the state of the process with this folder under /proc.
 inline ProcessState state_of(const std::filesystem::path& process) {
   std::ifstream stat(process / "stat");
   std::string line;
   std::getline(stat, line);
-  // The name stands in parentheses, and may have some in it.
+  // The name is in parentheses, and may contain parentheses.
   const std::size_t name_ends = line.rfind(')');
   if (name_ends == std::string::npos || name_ends + 4 > line.size()) return {};
   return {line[name_ends + 2], pid_t(std::atoi(line.c_str() + name_ends + 4))};
@@ -46,7 +46,7 @@ inline int zombies_of_this_process() {
   return zombies;
 }
 
-/// In /dev/shm, mapped by nobody: other programs may use some at the same time.
+/// In /dev/shm, and not mapped by any process: other programs may use some at the same time.
 inline std::set<std::string> abandoned_shared_memory() {
   std::set<std::string> found;
   std::error_code gone;
@@ -62,10 +62,10 @@ inline std::set<std::string> abandoned_shared_memory() {
 
 class GroupResources {
  public:
-  /// What there is beyond what was there when this was made, after waiting for what is on its way out; empty
-  /// when nothing is.
+  /// Returns what exists beyond what existed at construction, after waiting for what is about to go; empty if
+  /// there is nothing.
   std::string more() const {
-    // Other programs may make some at any time, and be just about to map it.
+    // Other programs may make some at any time, and be about to map it.
     std::set<std::string> memory = abandoned_shared_memory();
     eventually([&] {
       const std::set<std::string> now = abandoned_shared_memory();

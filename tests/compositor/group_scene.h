@@ -42,7 +42,7 @@ inline volume::RenderRequest request_on_steps(const Texture& texture) {
   return request;
 }
 
-/// In slice ranges of three slices.
+/// Uploads slice ranges of three slices.
 inline void upload(RenderService& service, const Texture& texture) {
   const volume::VolumeDescription& d = texture.description;
   service.begin_volume(d);
@@ -60,7 +60,7 @@ inline void upload(RenderService& service, const Texture& texture) {
   service.end_volume(d.id);
 }
 
-/// An image that outlives the next call, over the request's whole window, so that images can be compared.
+/// Copies an image, over the request's whole window: it outlives the next call, and can be compared.
 inline volume::Image whole_image(const Rendered& rendered, const volume::RenderRequest& request) {
   volume::Image image(request.window);
   const float neutral = request.op == volume::Operator::min ? std::numeric_limits<float>::max() : 0.0F;
@@ -81,12 +81,12 @@ inline double largest_difference(const volume::Image& a, const volume::Image& b)
   return a.rect == b.rect ? volume::testing::difference(a, b).max : 1e300;
 }
 
-/// Beside that of applications.
+/// The nodes' socket, beside that of applications.
 inline std::string socket_of_nodes(const std::string& path) {
   return path + ".nodes";
 }
 
-/// The launcher's part, on a thread of its own.
+/// The launcher, on a thread of its own.
 class Launcher {
  public:
   explicit Launcher(const std::string& path, const BrokerPatience& patience = {})

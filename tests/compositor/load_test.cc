@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What nodes read of files, what they say of it, and what is wrong with it.
+// What nodes read from files, what they report, and which files they refuse.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -105,7 +105,7 @@ TEST_F(LoadTest, WhatIsWrongWithAFileComesBackAndTheServiceGoesOn) {
     request.file = good;
     request.volume.size = request.volume.stored.high = {41, 37, 28};
     EXPECT_THAT(refusal(request), HasSubstr("is not the volume of 41 x 37 x 28 texels"));
-    // Half of a compressed file: only those that read its end can know.
+    // Half of a compressed file: only ranks that read its end can detect this.
     const std::string half =
         write("half_41x37x29_u8.raw", std::span(texture.texels).first(std::size_t(41 * 37 * 15)));
     ASSERT_EQ(std::system(("gzip -f " + half).c_str()), 0);
@@ -134,7 +134,7 @@ TEST_F(LoadTest, EveryTexelIsCountedOnceByHoweverManyRanks) {
         std::memcpy(&texel, &texture.texels[at], size);
         value = double(texel);
       } else {
-        std::uint16_t texel = 0;  // of u8 the lower half
+        std::uint16_t texel = 0;  // for u8, the lower half
         std::memcpy(&texel, &texture.texels[at], size);
         value = texel / (type == TexelType::u8 ? 255.0 : 65535.0);
       }

@@ -23,12 +23,12 @@ namespace understudy::compositor::testing {
 class LoadingGroup : public ::testing::Test {
  protected:
   void TearDown() override {
-    // The launcher goes first: its group then ends, and is joined.
+    // First: the launcher's group then ends, and is joined.
     launcher_.reset();
     group_ = {};
   }
 
-  /// 0: in this process.
+  /// Connects to a group of `ranks` ranks; 0: a service in this process.
   std::unique_ptr<LoadingService> service(int ranks, const SortSettings& sort = {}) {
     if (ranks == 0) return embedded_loading_service();
     group_ = std::jthread([this, ranks, sort] {

@@ -15,8 +15,8 @@ using namespace volume;
 
 namespace {
 
-/// Among the tables that the nodes keep, the one of some_request_for_slice_segments() is at this place, and no
-/// other is.
+/// Where the table of some_request_for_slice_segments() is among the tables that the nodes keep; all other
+/// places are empty.
 constexpr int kept_place = 1;
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every kind of message between applications, launchers and nodes: one of it, and how it is read.
+// Every kind of message between applications, launchers and nodes: an example of each, and its decoder.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace understudy::compositor::testing {
 struct MessageKind {
   const char* name;
   std::vector<std::byte> bytes;
-  /// Throws MalformedMessage where the message cannot be believed.
+  /// Throws MalformedMessage if the message is malformed.
   std::function<std::vector<std::byte>(std::span<const std::byte>)> read_and_write_again;
 };
 

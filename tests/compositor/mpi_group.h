@@ -39,7 +39,7 @@ class MpiGroup {
     arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
-    // OpenMPI keeps memory until the end; that is not what the sanitizer looks for here.
+    // OpenMPI keeps memory until it ends; the sanitizer does not look for that here.
     for (const char* setting :
          {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "ASAN_OPTIONS=detect_leaks=0"})
       ::putenv(const_cast<char*>(setting));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The real thing: mpirun, understudy-node processes, and what happens when one of them is killed.
+// mpirun and real understudy-node processes, and what happens when one of them is killed.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -53,14 +53,14 @@ TEST(MpiNode, ImagesEqualTheEmbeddedOnesForAnyNumberOfRanks) {
         "%d ranks: at most %.2g apart; last frame %.2f ms to render, %.2f ms to composite, %llu bytes\n", ranks,
         worst, counts.render_ms, counts.composite_ms, static_cast<unsigned long long>(counts.bytes_exchanged));
     EXPECT_LE(worst, 1e-5);
-    // All ranks end, in peace, when the launcher lets go.
+    // All ranks end in an orderly way when the launcher closes its connection.
     launcher.reset();
     EXPECT_EQ(group.wait(), 0);
   }
 }
 
 TEST(MpiNode, ImagesStayTheSameWhileRanksAreBalanced) {
-  // All there is to see lies in one corner: by blocks, one rank would have it all.
+  // All that is visible lies in one corner: divided by blocks, one rank would have all of it.
   const auto embedded = embedded_service();
   Texture texture = some_texture();
   const auto corner = [](const volume::Vec3& t) {
@@ -81,7 +81,7 @@ TEST(MpiNode, ImagesStayTheSameWhileRanksAreBalanced) {
     for (int image = 0; image < 15; ++image) {
       volume::RenderRequest request = some_request(texture);
       auto& entries = std::get<volume::TransferFunction>(request.classification).entries;
-      if (image % 5 == 4) std::ranges::reverse(entries);  // now the rest of it shows
+      if (image % 5 == 4) std::ranges::reverse(entries);  // now the rest of the volume shows
       worst = std::max(worst, largest_difference(image_of(*linked, request), image_of(*embedded, request)));
     }
     std::printf("%s: at most %.2g apart\n", way.back().c_str(), worst);
@@ -129,8 +129,8 @@ TEST(MpiNode, SendsTheBytesAndMessagesThatAreCountedFromThePartsOfAnImage) {
   };
   for (int ranks = 1; ranks <= 8; ++ranks)
     for (std::size_t a = 0; a < algorithm_count; ++a) {
-      // All algorithms on some numbers of ranks, one on the others; each way back for each of both. (Groups
-      // take seconds to start; `./run bench scaling` has all of them.)
+      // All algorithms for some numbers of ranks, one for the others; both ways of gathering. (Groups take
+      // seconds to start; `./run bench scaling` measures all combinations.)
       const bool all_algorithms = ranks == 3 || (takes_all_cases() && (ranks == 2 || ranks == 5 || ranks == 8));
       if (!all_algorithms && a != std::size_t(ranks) % algorithm_count) continue;
       const Gather gather = (ranks + int(a)) % 2 == 0 ? Gather::direct : Gather::root;
@@ -153,7 +153,7 @@ TEST(MpiNode, SendsTheBytesAndMessagesThatAreCountedFromThePartsOfAnImage) {
     }
 }
 
-// So often its threads have given a processor up.
+// How often the threads of a process have given up a processor.
 long long waits_of(pid_t process) {
   long long waits = 0;
   for (const auto& thread : std::filesystem::directory_iterator(fmt::format("/proc/{}/task", process))) {

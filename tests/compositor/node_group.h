@@ -28,7 +28,7 @@ inline Deadline soon() {
   return Clock::now() + std::chrono::seconds(20);
 }
 
-/// So that what travels does not depend on what was faster a moment ago.
+/// So that what is sent does not depend on measured times.
 constexpr ExchangeSettings drawn_first{.overlap = Overlap::off, .packed = false};
 
 // Ranks on threads, which end when the launcher closes its connection.
@@ -61,7 +61,7 @@ class Group {
 class NodeGroupTest : public ::testing::Test {
  protected:
   void TearDown() override {
-    // The launcher goes first: its groups then end, and are joined.
+    // First: the launcher's groups then end, and are joined.
     launcher_.reset();
     groups_.clear();
   }
@@ -74,7 +74,7 @@ class NodeGroupTest : public ::testing::Test {
     return *groups_.back();
   }
   std::unique_ptr<RenderService> connect() { return remote_render_service(path_, 20'000); }
-  // An application that knows the protocol but has no manners.
+  // An application that speaks the protocol, but need not obey it.
   std::unique_ptr<Connection> raw_client() {
     auto result = std::make_unique<Connection>(connect_to(path_, soon()), service_protocols);
     result->send(LauncherMessage::hello_client, 1, Bytes{}, soon());

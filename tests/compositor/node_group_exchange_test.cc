@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What travels between the ranks of whole node groups.
+// What the ranks of whole node groups send each other.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 using namespace testing;
 
-/// For all images of a test: what costs least may take more messages, or more bytes, for smaller parts.
+/// For all images of a test: the cheapest exchange may take more messages, or bytes, for smaller parts.
 constexpr ExchangeSettings one_exchange{Algorithm::direct_send, Layout::rgba32f, Gather::direct, Overlap::off,
                                         false};
 
@@ -68,7 +68,7 @@ TEST_F(NodeGroupTest, PartsAreGatheredDirectlyOrByTheRoot) {
     bytes = rendered.counts.bytes_exchanged;
     EXPECT_GT(rendered.counts.bytes_of_whole_windows, bytes);
     volume::Image image = whole_image(rendered, request);
-    // Larger images need other memory, which the ranks must see too.
+    // Larger images need another buffer, which the ranks must map too.
     volume::RenderRequest larger = request;
     larger.viewport = larger.window = {0, 0, 480, 360};
     EXPECT_GT(linked->render(larger).image.rect.pixels(), 4 * rendered.image.rect.pixels());
@@ -84,7 +84,7 @@ TEST_F(NodeGroupTest, PartsAreGatheredDirectlyOrByTheRoot) {
               rendered_by({algorithm, Layout::rgba32f, Gather::root, Overlap::off, false}, gathered).rgba);
     std::printf("%s: %llu bytes directly, %llu gathered\n", std::string(name_of(algorithm)).c_str(),
                 static_cast<unsigned long long>(direct), static_cast<unsigned long long>(gathered));
-    // One rank has all of a tree's image in the end, and it may be rank 0.
+    // With a tree, one rank ends with the whole image, and that may be rank 0.
     if (algorithm == Algorithm::serial || algorithm == Algorithm::tree) {
       EXPECT_LE(direct, gathered);
     } else {
@@ -118,7 +118,7 @@ TEST_F(NodeGroupTest, WhatIsBehindOpaqueTilesIsNotSent) {
       EXPECT_LE(largest_difference(image, complete), 1e-5);
       if (!first) first = image;
       EXPECT_EQ(image.rgba, first->rgba) << "whenever control messages come";
-      // One that is refused leaves no control message that counts.
+      // A refused image leaves no control message that counts.
       volume::RenderRequest wrong = request;
       wrong.version = 99;
       EXPECT_THROW(linked->render(wrong), RequestRefused);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sort-first and hybrid: groups of ranks that divide images.
+// Sort-first and hybrid: groups of ranks divide images.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -73,7 +73,7 @@ TEST_F(NodeGroupSort, ShowsTheImagesOfOneProcess) {
       double worst = 0;
       for (const TexelType type : {TexelType::u8, TexelType::f32, TexelType::rgba8}) {
         Texture texture = some_texture(1 + std::uint64_t(type), type);
-        texture.description.ghost_layer = 3;  // light
+        texture.description.ghost_layer = 3;  // for light
         upload(*linked, texture);
         upload(*embedded, texture);
         for (const Operator op : {Operator::over, Operator::max, Operator::min, Operator::add}) {
@@ -134,7 +134,7 @@ TEST_F(NodeGroupSort, SortFirstTakesTheSamplesOfOneRankAndMovesNoPixelBetweenThe
     EXPECT_EQ(all.rays, one.rays) << ranks;
     EXPECT_EQ(all.blocks, one.blocks) << ranks;
     EXPECT_EQ(all.blocks_empty, one.blocks_empty) << ranks;
-    // A message from each to rank 0, which says that its part is in the application's memory.
+    // Each sends rank 0 a message that its part is in the image buffer.
     EXPECT_LE(all.messages, std::uint64_t(ranks - 1));
     EXPECT_LE(all.bytes_exchanged, std::uint64_t(ranks) * 64);
     dismiss(group);

@@ -61,7 +61,7 @@ TEST_F(NodeGroupTest, IntegralsAreThoseOfOneProcess) {
     ASSERT_EQ(integrals.size(), pixels.size()) << ranks;
     for (std::size_t i = 0; i < pixels.size(); ++i)
       for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(integrals[i][k], expected[i][k], 1e-6) << ranks;
-    // An image after them, and as many as time allows.
+    // An image after them, and as many integrals as time allows.
     EXPECT_FALSE(service->render(request).image.rect.empty());
     EXPECT_LE(service->integrals(request, pixels, 0).size(), pixels.size());
     request.steps.reset();
@@ -87,7 +87,7 @@ TEST_F(NodeGroupTest, LinkedEqualsEmbeddedForAnyRankCountOperatorAndTexelType) {
         const volume::RenderRequest request = some_request(texture, op);
         const volume::Image expected = image_of(*embedded, request);
         worst = std::max(worst, largest_difference(image_of(*linked, request), expected));
-        // The scene must be one in which something is to be seen.
+        // The scene must show something.
         ASSERT_GT(largest_difference(expected, volume::Image(request.window)), 0.05);
       }
     }
@@ -160,7 +160,7 @@ TEST_F(NodeGroupTest, AVolumeThatIsBegunAgainIsReplaced) {
   EXPECT_LE(largest_difference(image_of(*linked, request), image_of(*embedded, request)), 1e-5);
 }
 
-// Boxes of a texture's own texels, one after the other.
+// Returns the texels of boxes of a texture, one box after the other.
 std::vector<std::byte> texels_of(const Texture& texture, std::span<const volume::TexelBox> boxes) {
   const std::size_t texel = volume::bytes_per_texel(texture.description.type);
   std::vector<std::byte> bytes;
@@ -224,7 +224,7 @@ TEST_F(NodeGroupTest, TexelsTravelOnlyToTheRanksThatShowThem) {
   struct Counts {
     std::atomic<std::uint64_t> received = 0, broadcast = 0;
   };
-  // The ranks end after this function does.
+  // The ranks outlive this function.
   const auto shared_counts = std::make_shared<Counts>();
   Counts& counts = *shared_counts;
   class Counting : public ForwardingCommunicator {
@@ -263,7 +263,7 @@ TEST_F(NodeGroupTest, TexelsTravelOnlyToTheRanksThatShowThem) {
   EXPECT_LT(counts.received, texture.texels.size()) << "less than one copy travels";
   EXPECT_LT(counts.broadcast, texture.texels.size() / 2) << "orders and boxes, no texels";
 
-  // One texel in the midst of one rank's share, then one that two ranks share.
+  // One texel within one rank's share, then one that two ranks share.
   const volume::TexelBox& last = shown.back();
   const volume::TexelBox one{{last.high[0] - 1, last.high[1] - 1, last.high[2] - 1}, last.high};
   const volume::TexelBox shared = volume::intersection(shown[2], shown[3]);
@@ -307,9 +307,9 @@ volume::RenderRequest some_slice_segments(const Texture& texture, int seed) {
   return request;
 }
 
-// Counted where it arrives: on two ranks of three.
+// Counted where it arrives: on two of three ranks.
 TEST_F(NodeGroupTest, APreIntegrationTableTravelsOnce) {
-  // The ranks end after this function does.
+  // The ranks outlive this function.
   const auto counter = std::make_shared<std::atomic<std::uint64_t>>(0);
   class Counting : public ForwardingCommunicator {
    public:
@@ -360,16 +360,16 @@ TEST_F(NodeGroupTest, APreIntegrationTableTravelsOnce) {
     expect(*linked, 0, false);
     expect(*linked, 1, false);
   }
-  // Another application has places of its own.
+  // Another application has its own places.
   expect(*other, 2, true);
   expect(*linked, 0, false);
   expect(*other, 2, false);
-  // One table more than there are places: the one not asked for longest makes room.
+  // One table more than there are places: the least recently used one is dropped.
   for (int seed = 2; seed <= limits::max_kept_pre_integration_tables; ++seed) expect(*linked, seed, true);
   expect(*linked, 0, false);
   expect(*linked, 1, true);
 
-  // A table that is refused is in no place, and neither is the one that made room for it.
+  // A refused table is in no place, and neither is the one that was dropped for it.
   volume::RenderRequest bad = some_slice_segments(texture, 0);
   std::get<volume::PreIntegrationTable>(bad.classification).entries.pop_back();
   EXPECT_THROW(linked->render(bad), RequestRefused);
@@ -381,7 +381,7 @@ TEST_F(NodeGroupTest, APreIntegrationTableTravelsOnce) {
         1e-5);
 }
 
-// An application without manners names a table that it never sent.
+// An application refers to a table that it never sent.
 TEST_F(NodeGroupTest, APreIntegrationTableThatIsNotThereIsARefusal) {
   start(2);
   const auto senseless = raw_client();
@@ -435,7 +435,7 @@ TEST_F(NodeGroupTest, LargeAndManyBoxesTravelInSeveralMessages) {
   EXPECT_LE(largest_difference(image_of(*linked, request), image_of(*embedded, request)), 1e-5);
 }
 
-// What makes no sense is refused alike by both services, with a reason, and both go on serving.
+// Both services refuse senseless requests alike, with a reason, and go on serving.
 TEST_F(NodeGroupTest, SenselessRequestsAreRefusedAndTheServiceGoesOn) {
   start(3);
   for (const auto& service : {connect(), embedded_service()}) {
@@ -455,7 +455,7 @@ TEST_F(NodeGroupTest, SenselessRequestsAreRefusedAndTheServiceGoesOn) {
     for (const auto& [box, texels] : {std::pair{outside, 2}, {volume::TexelBox{{0, 0, 0}, {41, 36, 1}}, 1}}) {
       service->begin_volume(texture.description);
       const auto bytes = std::span(texture.texels).first(volume::texels_in(box));
-      // What is wrong may be said by a later call.
+      // A later call may report the error.
       EXPECT_THROW(
           {
             service->add_texels(texture.description.id, {&box, 1}, bytes);
@@ -502,7 +502,7 @@ TEST_F(NodeGroupTest, SenselessRequestsAreRefusedAndTheServiceGoesOn) {
 }
 
 TEST_F(NodeGroupTest, AnErrorOnOneRankIsARefusalByAll) {
-  // Rank 1 reads nonsense where the others read the request.
+  // Rank 1 reads garbage where the others read the request.
   std::atomic<bool> armed = false;
   class Corrupting : public ForwardingCommunicator {
    public:
@@ -529,7 +529,7 @@ TEST_F(NodeGroupTest, AnErrorOnOneRankIsARefusalByAll) {
   EXPECT_THROW(linked->render(some_request(texture)), RequestRefused);
   EXPECT_GT(linked->render(some_request(texture)).counts.samples_taken, 0U);
 
-  // A volume of which some ranks could not take a segment, because it came to them twice, is not kept half.
+  // A volume is not kept in part if some ranks refused a slice range, because they had received it before.
   linked->begin_volume(texture.description);
   linked->add_texels(texture.description.id, {&texture.description.stored, 1}, texture.texels);
   const volume::TexelBox first_slice{{0, 0, 0}, {41, 37, 1}};
@@ -567,7 +567,7 @@ TEST_F(NodeGroupTest, GarbageIsDroppedAndDisturbsNobody) {
   ASSERT_GT(::send(huge->fd(), &header, sizeof header, MSG_NOSIGNAL), 0);
   for (const auto& each : {garbage.get(), wrong_type.get(), huge.get()})
     EXPECT_THROW(each->receive(soon()), ConnectionLost);
-  // A message that only its content betrays is answered.
+  // A message that is malformed only in its content is answered.
   const auto senseless = raw_client();
   senseless->send(NodeMessage::render, 2, encode_text("no request"), soon());
   const Message answer = senseless->receive(soon());
@@ -608,7 +608,7 @@ TEST_F(NodeGroupTest, ALostGroupIsReportedAndANewConnectionWorks) {
     EXPECT_THAT(first, HasSubstr(path_));
     EXPECT_EQ(first.find('\n'), std::string::npos);
   }
-  // And so for ever, at once, with the same reason.
+  // Later calls throw at once, with the same reason.
   try {
     linked->end_volume(1);
     ADD_FAILURE();
@@ -618,7 +618,7 @@ TEST_F(NodeGroupTest, ALostGroupIsReportedAndANewConnectionWorks) {
   start(3);
   linked = connect();
   EXPECT_EQ(linked->nodes(), 3);
-  EXPECT_THROW(linked->render(request), RequestRefused);  // the new group has to be filled again
+  EXPECT_THROW(linked->render(request), RequestRefused);  // the volume must be uploaded to the new group
   upload(*linked, texture);
   EXPECT_LE(largest_difference(image_of(*linked, request), before), 1e-5);
 }
@@ -650,7 +650,7 @@ TEST_F(NodeGroupTest, WithoutAGroupPatienceEndsInServiceLost) {
   EXPECT_THROW(remote_render_service(std::string(300, 'x'), 50), ServiceLost);
 }
 
-// A node group that takes applications in and then misbehaves.
+// A node group that accepts applications and then misbehaves.
 class BadGroup {
  public:
   BadGroup(const std::string& path, Launcher& launcher)
@@ -701,7 +701,7 @@ TEST_F(NodeGroupTest, AnswersThatCannotBeTrueEndTheConnection) {
       [](Connection& c, const Message& m) {
         c.send(NodeMessage::rendered, m.sequence, encode(RenderedReply{{0, 0, 100, 100}, {}}), soon());
       },
-      // More pixels than there is memory for.
+      // More pixels than the image buffer holds.
       [](Connection& c, const Message& m) {
         c.send(NodeMessage::rendered, m.sequence, encode(RenderedReply{{0, 0, 8000, 8000}, {}}), soon());
       },
@@ -712,7 +712,7 @@ TEST_F(NodeGroupTest, AnswersThatCannotBeTrueEndTheConnection) {
       [](Connection& c, const Message& m) { c.send(NodeMessage::done, m.sequence, Bytes{}, soon()); },
       [](Connection& c, const Message& m) { c.send(NodeMessage::rendered, m.sequence, Bytes{}, soon()); },
       [](Connection& c, const Message&) { ::send(c.fd(), "x marks the spot, not a header", 30, MSG_NOSIGNAL); },
-      // Nothing more, in the midst of an image; half an answer, and nothing more.
+      // The end of the connection instead of an image; half an answer, and nothing more.
       [](Connection& c, const Message&) { ::shutdown(c.fd(), SHUT_RDWR); },
       [](Connection& c, const Message& m) {
         MessageHeader header{.type = NodeMessage::rendered};

@@ -116,7 +116,7 @@ TEST(OpaqueTiles, ControlMessagesOfOtherImagesCountForNothing) {
   const std::array<Rect, 2> footprints{request.window, request.window};
   run_ranks(2, [&](Communicator& communicator) {
     {
-      // This image is refused somewhere: nobody hears what was told.
+      // Some rank refuses this image: no rank reads these control messages.
       OpaqueTiles tiles(communicator, 7, request, order, footprints);
       if (communicator.rank() == 0) tiles.cover(request.window);
       tiles.tell_rest();
@@ -154,7 +154,7 @@ TEST(OpaqueTiles, MoreThanAControlMessageHolds) {
   });
 }
 
-/// Two ranks, of which the farther one begins when the nearer one has told of all that it covers.
+/// Two ranks, of which the farther one begins when the nearer one has told it of all its opaque tiles.
 struct Drawn {
   Image image;
   std::array<volume::FrameCounts, 2> counts;  ///< of the nearer and the farther one
@@ -182,7 +182,7 @@ Drawn drawn(const Texture& texture, const RenderRequest& request, bool with_occl
     volume::FrameCounts counts;
     if (!nearer) {
       told.wait();
-      // Only this thread hears what was told, and on a busy machine others draw before it does.
+      // Only this thread reads control messages, and on a busy machine other threads draw before it does.
       tiles.hides(request.viewport);
     }
     Image image = renderer.render(1, request, counts, with_occlusion ? &tiles : nullptr);

@@ -79,7 +79,7 @@ TEST_F(NodeGroupTest, ImagesAreTheSameWhenTheyAreCompositedWhileTheyAreDrawn) {
         EXPECT_EQ(rendered.counts.blocks, counts[i].blocks);
         EXPECT_EQ(rendered.counts.blocks_empty, counts[i].blocks_empty);
         EXPECT_GT(rendered.counts.messages, counts[i].messages) << "for every band";
-        // One that is refused by all leaves the group in step.
+        // An image that all ranks refuse leaves the group in step.
         volume::RenderRequest wrong = requests[i];
         wrong.version = 99;
         EXPECT_THROW(linked->render(wrong), RequestRefused);
@@ -95,7 +95,7 @@ TEST(Overlap, ARankThatCannotGoOnEndsTheImageOnAllRanksAfterTheSameBand) {
   constexpr int ranks = 3;
   const std::size_t bands = bands_of(whole).size();
   ASSERT_GT(bands, 3U);
-  // Rank 1 fails in each of the bands, cannot begin, or draws all.
+  // Rank 1 fails in each of the bands, cannot begin, or draws all of them.
   for (std::size_t failing = 0; failing <= bands + 1; ++failing) {
     std::vector<float> memory(4 * whole.pixels(), -1);
     run_ranks(ranks, [&](Communicator& communicator) {
@@ -153,7 +153,7 @@ TEST(OverlapChoice, IsWhatWasFasterForTheSamplesThatWereDrawn) {
     for (int i = 0; i < 1000; ++i) {
       const bool overlap = choice.next();
       overlapped += int(overlap);
-      // Views with more samples take longer, whichever way.
+      // Views with more samples take longer, overlapped or not.
       const std::uint64_t samples = 1000 + 37 * std::uint64_t(i % 11);
       const double seconds = double(samples) * (overlap == overlap_is_faster ? 1e-6 : 1.3e-6);
       choice.took(overlap, samples, seconds, 0.3 * seconds);

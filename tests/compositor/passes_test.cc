@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volumes that are shown in parts: images are those of the whole, what cannot be seen is not loaded, and no
-// rank takes more memory than it was told it might.
+// Volumes that are shown in parts: images equal those of the whole volume, parts that cannot be seen are not
+// loaded, and no rank exceeds its memory limit.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -30,7 +30,7 @@ class Passes : public LoadingGroup {
     return write("v_41x37x29_" + std::string(name_of(texture.description.type)) + ".raw", texture.texels);
   }
 
-  /// Shown in `parts` parts by `service`.
+  /// A volume shown in `parts` parts by `service`.
   struct Shown {
     Shown(LoadingService& service, const Texture& texture, const std::string& path, int parts)
         : file(volume::open_volume(path)),
@@ -53,7 +53,7 @@ TEST_F(Passes, ShowTheImagesOfTheWholeVolume) {
     double worst = 0;
     for (const TexelType type : {TexelType::u8, TexelType::f32}) {
       Texture texture = some_texture(7, type);
-      texture.description.ghost_layer = 3;  // light
+      texture.description.ghost_layer = 3;  // for light
       const std::string path = write_raw(texture);
       const auto sent = embedded_service();
       upload(*sent, texture);
@@ -82,7 +82,7 @@ TEST_F(Passes, ShowTheImagesOfTheWholeVolume) {
   }
 }
 
-/// Opaque in the half of the volume nearer to the usual camera, and nothing elsewhere but a haze.
+/// Opaque in the half of the volume nearer to the usual camera, elsewhere only a haze.
 Texture opaque_in_front() {
   Texture texture = some_texture(7, TexelType::u8);
   const auto& size = texture.description.size;
@@ -133,11 +133,11 @@ TEST_F(Passes, ReadNoFileForTheValuesThatItTells) {
   const auto sent = embedded_service();
   upload(*sent, texture);
   EXPECT_LE(largest_difference(shown.image(request), image_of(*sent, request)), 1e-5);
-  // A least value is shown even where it is 0.
+  // Under `min` a sample shows even if it is 0.
   request.op = Operator::min;
   EXPECT_LE(largest_difference(shown.image(request), image_of(*sent, request)), 1e-5);
   request.op = Operator::over;
-  // Nothing is visible: nothing is read.
+  // If nothing is visible, nothing is read.
   request.classification = volume::TransferFunction{0, 1, {{0, 0, 0, 0}, {0, 0, 0, 0}}};
   const int loads = shown.renderer.figures().loads;
   EXPECT_LE(largest_difference(shown.image(request), volume::Image(request.window)), 0);

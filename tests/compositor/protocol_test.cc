@@ -125,7 +125,7 @@ TEST(Protocol, AKeptTableIsNamedAndNotSent) {
 TEST(Protocol, AMessageCutAnywhereIsRefusedWithFieldAndOffset) {
   for (const MessageKind& kind : all_message_kinds())
     for (std::size_t size = 0; size < kind.bytes.size(); ++size) {
-      // A copy of just that size, so that reading on is seen by the sanitizer.
+      // A copy of exactly that size, so that the sanitizer detects reads beyond its end.
       const std::vector<std::byte> cut(kind.bytes.begin(), kind.bytes.begin() + std::ptrdiff_t(size));
       try {
         kind.read_and_write_again(cut);
@@ -146,8 +146,8 @@ TEST(Protocol, BytesLeftOverAreRefused) {
 }
 
 TEST(Protocol, AbsurdValuesInAnyPlaceNeverGetPast) {
-  // Each eight bytes in turn become a huge, a negative and a boundary value: refused, or harmless (a
-  // coordinate, an id), never a crash or a large allocation.
+  // Each eight bytes in turn become a huge, a negative and a boundary value: that is refused or harmless (a
+  // coordinate, an id), and never causes a crash or a large allocation.
   int refused = 0, harmless = 0;
   for (const MessageKind& kind : all_message_kinds())
     for (std::size_t at = 0; at + 8 <= kind.bytes.size(); at += 8)
@@ -178,12 +178,12 @@ TEST(Protocol, RandomDamageNeverGetsPast) {
       try {
         kind.read_and_write_again(bytes);
       } catch (const MalformedMessage&) {
-        continue;  // anything else fails the test
+        continue;  // any other exception fails the test
       }
     }
 }
 
-// The limits that a message can cross, each crossed by one.
+// Each limit that a message can exceed is exceeded by one.
 TEST(Protocol, LimitsAreKept) {
   const auto refused = [](const RenderRequest& r) {
     EXPECT_THROW(decode_request(encode(r)), MalformedMessage);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node groups whose blocks travel while images are drawn: the images stay the same.
+// Node groups that move blocks while images are drawn: the images stay the same.
 #include "compositor/node/rebalancer.h"
 
 #include <gmock/gmock.h>
@@ -35,7 +35,7 @@ Texture scene(TexelType type = TexelType::u8, volume::Wrap wrap = volume::Wrap::
   return volume::testing::sampled(description, volume::testing::marschner_lobb_field());
 }
 
-/// An image of its own for each number: the camera turns.
+/// A different image for each number: the camera turns.
 volume::RenderRequest request_of(const Texture& texture, int drawn) {
   using namespace volume::testing;
   using volume::multiply;
@@ -55,8 +55,8 @@ std::vector<std::byte> texels_of(const Texture& texture, const volume::TexelBox&
   return part;
 }
 
-/// One rank, without sockets. Its time is not measured: it is its samples times its relative cost, so that all
-/// that happens is the same in every run.
+/// One rank, without sockets. Its time is not measured, but computed as its samples times its relative cost, so
+/// that every run is the same.
 class Rank {
  public:
   Rank(Communicator& communicator, const BalanceSettings& settings,
@@ -166,7 +166,7 @@ TEST(Rebalancer, ImagesStayTheSameWhileBlocksTravelAndTexelsChange) {
         Rank rank(communicator, figures.settings(balance));
         rank.upload(texture);
         for (int drawn = 0; drawn < 40; ++drawn) {
-          // The slow rank changes, so that blocks go there and back.
+          // The slow rank changes, so that blocks move there and back.
           const double relative_cost = communicator.rank() == (drawn < 20 ? 0 : ranks - 1) ? 4 : 1;
           if (drawn % 6 == 5) {
             ++texture.description.version;
@@ -195,7 +195,7 @@ TEST(Rebalancer, ImagesStayTheSameWhileBlocksTravelAndTexelsChange) {
     }
 }
 
-/// The part of the field at `place` alone is seen, under another table for each.
+/// Shows only the part of the field at `place`, with a transfer function for each place.
 volume::RenderRequest showing(const Texture& texture, int drawn, double place) {
   volume::RenderRequest request = request_of(texture, drawn);
   volume::TransferFunction table;
@@ -222,7 +222,7 @@ TEST(Rebalancer, CutsAVolumeAnewForWhatIsVisibleOfIt) {
     Rank rank(communicator, figures.settings(Balance::off), volume::PartitionMethod::cost);
     rank.upload(texture);
     for (int drawn = 0; drawn < 24; ++drawn) {
-      // A table is kept for six images.
+      // Each transfer function is used for six images.
       const volume::RenderRequest request = showing(texture, drawn, drawn / 6 % 2 == 0 ? 0.2 : 0.8);
       const volume::Image image = rank.image(request, 1);
       if (communicator.rank() != 0) continue;
@@ -300,7 +300,7 @@ TEST(Rebalancer, GivesNoRankMoreBlocksThanItHasMemoryFor) {
   const std::size_t bound = most_held(0), free = most_held(std::size_t(1) << 30);
   std::printf("the busiest rank holds %zu blocks, and %zu where memory is left\n", bound, free);
   EXPECT_LT(bound, free);
-  // Without memory left a rank holds what it held, its ghost layer counted.
+  // Without memory left, a rank can hold what it holds, its ghost layer included.
   const Texture texture = scene();
   std::size_t even = 0;
   for (const volume::TexelBox& box :
@@ -309,7 +309,7 @@ TEST(Rebalancer, GivesNoRankMoreBlocksThanItHasMemoryFor) {
   EXPECT_LE(bound, even + even / 8);
 }
 
-/// Draws every image so many times.
+/// Draws every image `times` times.
 class Laborious : public volume::BrickRenderer {
  public:
   Laborious(const volume::BrickStore& store, int times)
@@ -335,7 +335,7 @@ TEST(Rebalancer, WholeNodesWithARankSlowedToASixteenthShowTheSameImages) {
     const ScratchFolder folder;
     const std::string path = folder / "control";
     Figures figures;
-    std::jthread group;  // ends once the launcher has
+    std::jthread group;  // ends after the launcher
     Launcher launcher(path);
     group = std::jthread([&] {
       run_ranks(4, [&](Communicator& communicator) {
@@ -354,7 +354,7 @@ TEST(Rebalancer, WholeNodesWithARankSlowedToASixteenthShowTheSameImages) {
     upload(*linked, texture);
     upload(*embedded, texture);
     double worst = 0;
-    // Times are real here; sooner or later they tell.
+    // Times are measured here; sooner or later planes move.
     for (int drawn = 0; drawn < 20 || (figures.moves == 0 && drawn < 1000); ++drawn) {
       const volume::RenderRequest request = request_of(texture, drawn % 40);
       worst = std::max(worst, largest_difference(image_of(*linked, request), image_of(*embedded, request)));
@@ -362,7 +362,7 @@ TEST(Rebalancer, WholeNodesWithARankSlowedToASixteenthShowTheSameImages) {
     std::printf("%d moves, at most %.2g apart\n", figures.moves.load(), worst);
     EXPECT_LE(worst, 1e-5);
     EXPECT_GT(figures.moves, 0);
-    // Another volume under the same name begins with a division of its own.
+    // Another volume with the same id begins with a partition of its own.
     Texture again = scene(TexelType::f32);
     upload(*linked, again);
     upload(*embedded, again);

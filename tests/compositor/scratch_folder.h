@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder that goes away with the test, and the other things around processes that tests ask for.
+// A folder that is removed at the end of a test, and other helpers for tests of processes.
 #pragma once
 
 #include <unistd.h>

@@ -16,7 +16,7 @@ namespace {
 
 using volume::Rect;
 
-/// `count` machines with as many ranks each, which MPI has spread one after the other.
+/// `count` machines with equally many ranks, which MPI has assigned to them in turn.
 std::vector<int> spread_over(int count, int ranks) {
   std::vector<int> machines;
   machines.reserve(std::size_t(ranks));
@@ -62,7 +62,7 @@ TEST(Arrangement, OfHybridHasAboutAsManyGroupsAsMembers) {
   EXPECT_EQ(Arrangement({Sort::hybrid}, on_one_machine(16), 1000).members(), 4);
   EXPECT_EQ(Arrangement({Sort::hybrid}, on_one_machine(8), 1000).members(), 4);
   EXPECT_EQ(Arrangement({Sort::hybrid}, on_one_machine(7), 1000).members(), 7);
-  // Of machines, whose ranks divide an image further.
+  // Among machines, whose ranks divide an image further.
   const Arrangement machines({Sort::hybrid}, spread_over(4, 16), 1000);
   EXPECT_EQ(machines.members(), 2);
   EXPECT_EQ(machines.groups(), 8);
@@ -73,12 +73,12 @@ TEST(Arrangement, AutomaticallyAsFewMachinesHoldACopyAsHaveRoomForIt) {
   EXPECT_EQ(Arrangement(settings, spread_over(8, 8), 300).members(), 1);
   EXPECT_EQ(Arrangement(settings, spread_over(8, 8), 600).members(), 2);
   EXPECT_EQ(Arrangement(settings, spread_over(8, 16), 1000).members(), 4);
-  EXPECT_EQ(Arrangement(settings, spread_over(6, 6), 1000).members(), 6);  // no four of six
+  EXPECT_EQ(Arrangement(settings, spread_over(6, 6), 1000).members(), 6);  // four does not divide six
   EXPECT_EQ(Arrangement(settings, spread_over(8, 8), 100'000).members(), 8);
-  // Of machines with different numbers of ranks each rank has room for all of it, or all divide it.
+  // If machines have different numbers of ranks, each rank has room for the whole volume, or all divide it.
   EXPECT_EQ(Arrangement(settings, {0, 0, 0, 1}, 300).members(), 1);
   EXPECT_EQ(Arrangement(settings, {0, 0, 0, 1}, 301).members(), 4);
-  // However little room there is, one machine has to do.
+  // However little room there is, a single machine must do.
   EXPECT_EQ(Arrangement(settings, on_one_machine(8), 100'000).members(), 1);
 }
 
@@ -91,7 +91,7 @@ TEST(Arrangement, HasAPlaceForEveryRankAndARankOnEveryPlace) {
       for (int rank = 0; rank < arrangement.ranks(); ++rank) {
         const Arrangement::Place& place = arrangement.place(rank);
         EXPECT_EQ(arrangement.rank_at(place.group, place.member), rank);
-        // Whose bricks a rank reads is the same member, on the same machine, and reads its own.
+        // A rank's keeper is the same member, on the same machine, and reads its own bricks.
         EXPECT_EQ(arrangement.place(place.keeper).member, place.member);
         EXPECT_EQ(arrangement.place(place.keeper).keeper, place.keeper);
         EXPECT_EQ(machines[std::size_t(place.keeper)], machines[std::size_t(rank)]);
@@ -110,7 +110,7 @@ TEST(Sort, HasNames) {
   EXPECT_EQ(settings.sort, Sort::hybrid);
 }
 
-/// Costs of the tiles of `pixels`, one in three of nothing.
+/// Costs of the tiles of `pixels`; about one in three is zero.
 std::vector<float> some_costs(const Rect& pixels, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<float> costs;
@@ -121,7 +121,7 @@ std::vector<float> some_costs(const Rect& pixels, unsigned seed) {
   return costs;
 }
 
-/// Pixel by pixel.
+/// Sums tile by tile.
 double sum_within(const Rect& pixels, const std::vector<float>& costs, const Rect& rect) {
   const std::vector<Rect> tiles = tiles_of(pixels);
   double sum = 0;
@@ -178,7 +178,7 @@ TEST(ImageLeaves, TileTheImageAndCostTheSame) {
         most = std::max(most, image.within(leaf));
       }
       EXPECT_EQ(covered, pixels.pixels());
-      // Cuts lie at multiples of four pixels.
+      // Leaves are not exactly equal, because cuts lie at multiples of four pixels.
       EXPECT_LE(most - least, 0.12 * image.within(pixels) / count) << count;
     }
   }

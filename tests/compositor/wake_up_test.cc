@@ -11,7 +11,7 @@
 namespace understudy::compositor {
 namespace {
 
-// So long that a wake-up that is missed is noticed by whoever runs the tests.
+// So long that a missed notification is noticed by whoever runs the tests.
 constexpr std::chrono::seconds for_ever{600};
 
 TEST(WakeUp, TwoProcessesWakeEachOtherAndMissNothing) {

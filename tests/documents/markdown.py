@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The project's documents, taken apart: text, table cells, fenced code, links and headings.
+"""Parses the project's documents into text, table cells, fenced code, links and headings.
 
-No Markdown library: the pages use a small part of Markdown, and the tests must not need a package."""
+Without a Markdown library: the pages use a small part of Markdown, and the tests must not need a package."""
 
 import re
 import subprocess
@@ -17,7 +17,7 @@ CODE = re.compile(r"`+[^`]*`+")
 
 @dataclass
 class Block:
-    """Fenced code, the line of its fence and the comment right before it."""
+    """Fenced code, the line of its fence and the comment directly before it."""
     language: str
     line: int
     comment: str
@@ -28,7 +28,7 @@ class Block:
 class Page:
     path: Path
     text: str
-    paragraphs: list = field(default_factory=list)  # (line, text): one heading, list item or paragraph each
+    paragraphs: list = field(default_factory=list)  # (line, text): each is one heading, list item or paragraph
     cells: list = field(default_factory=list)       # (line, text)
     blocks: list = field(default_factory=list)
     headings: list = field(default_factory=list)
@@ -39,7 +39,7 @@ class Page:
 
 
 def documents():
-    """README and the other pages of the root, and all of docs/."""
+    """Returns README and the other pages of the root, and all of docs/."""
     return [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").rglob("*.md"))]
 
 
@@ -88,7 +88,7 @@ def read(path):
 
 
 def words(text):
-    """Words as a reader counts them: code is one, a link is its text."""
+    """Returns words as a reader counts them: code is one word, a link is its text."""
     text = LINK.sub(lambda link: "" if link[1] else link[2], text)
     return [word for word in CODE.sub("code", text).split() if re.search(r"\w", word)]
 
@@ -99,7 +99,7 @@ def sentences(text):
 
 
 def links(page):
-    """(line, target, is an image) of every link outside code."""
+    """Yields (line, target, is an image) of every link outside code."""
     inside = None
     for number, line in enumerate(page.text.splitlines(), 1):
         fence = FENCE.match(line)
@@ -111,7 +111,7 @@ def links(page):
 
 
 def anchors(page):
-    """The anchors of a page's headings, as GitHub names them."""
+    """Returns the anchors of a page's headings, as GitHub names them."""
     found = set()
     for heading in page.headings:
         heading = LINK.sub(lambda link: link[2], heading).replace("`", "")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What every page must keep: lengths of pages, sentences and cells; links, anchors, images and named paths that exist."""
+"""Rules for every page: lengths of pages, sentences and cells; links, anchors, images and named paths exist."""
 
 import json
 import re
@@ -18,7 +18,7 @@ MOST_WORDS_OF_README = 900
 MOST_WORDS_OF_ARCHITECTURE = 999
 MOST_WORDS_OF_SENTENCE = 40
 MOST_WORDS_OF_CELL = 40
-# Of osgvolume, cmake, GoogleTest and others.
+# Options of osgvolume, cmake, GoogleTest and others.
 FOREIGN_OPTIONS = set("--cpu-tf --shader --preset --build --target --gtest --install --prefix --strip --component".split())
 PAGES = [markdown.read(path) for path in markdown.documents()]
 
@@ -28,7 +28,7 @@ TOP = ("apps", "compositor", "docs", "examples", "interceptor", "spu", "tests", 
 
 
 def word_count(page):
-    """As `wc -w` counts."""
+    """Counts words as `wc -w` does."""
     return len(page.text.split())
 
 

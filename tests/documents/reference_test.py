@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the reference of the headers with Doxygen (docs/Doxyfile) and expects no warning.
+"""Makes the reference of the headers with Doxygen (docs/Doxyfile), and allows no warning.
 
-    reference_test.py FOLDER      pages go there; UNDERSTUDY_VERSION is their version"""
+    reference_test.py FOLDER      writes the pages to FOLDER; UNDERSTUDY_VERSION is their version"""
 
 import subprocess
 import sys

@@ -5,11 +5,11 @@
     run_code_blocks.py BUILD PAGE [--slow]
     run_code_blocks.py --list
 
-The folder is temporary; it has links to everything in the checkout and to BUILD (as build/), an X server without a screen,
-a home of its own and BUILD/bin on PATH. A block fails when one of its commands does. In a console block lines after "$ " are
-commands; each line under a command must begin a line that it printed, where numbers stand for any numbers and … for any text.
+The folder is temporary. It has links to everything in the checkout and to BUILD (as build/), an X server without a screen,
+a HOME of its own, and BUILD/bin on PATH. A block fails if one of its commands does. In a console block, lines after "$ "
+are commands; each line under a command must begin a line of its output, where numbers match any numbers and … any text.
 
-A comment right before a block says how it is treated:
+A comment directly before a block says how it is treated:
 
     <!-- not run: REASON -->   never run here; --list names these blocks
     <!-- slow: REASON -->      only with --slow, which runs all other blocks too
@@ -35,7 +35,7 @@ from display import VirtualDisplay  # noqa: E402
 SHELLS = ("bash", "console")
 SECONDS = 280  # a test's limit is 300
 MOST_NOT_RUN = 21
-# osgvolume is a program without an end: OpenSceneGraph leaves after so many frames, of a small window.
+# osgvolume does not end by itself: OpenSceneGraph ends it after this many frames, in a small window.
 ENDING = {"OSG_RUN_FRAME_COUNT": "12", "OSG_WINDOW": "0 0 256 256", "UNDERSTUDY_SPEED_GUARD": "off"}
 
 
@@ -48,7 +48,7 @@ def runs(block, slow):
 
 
 def console_steps(text):
-    """(command, lines that it prints) of a console block; a command goes on after a backslash."""
+    """Returns (command, lines that it prints) of a console block; a command continues after a backslash."""
     steps, continued = [], False
     for line in text.splitlines():
         if continued:
@@ -63,7 +63,7 @@ def console_steps(text):
 
 
 def script_of(page, folder, slow):
-    """One shell script, and what its console commands must print: (line, command, file, lines)."""
+    """Returns one shell script, and what its console commands must print: (line, command, file, lines)."""
     parts = ["set -eu -o pipefail\n"]
     expected = []
     for block in page.blocks:
@@ -87,7 +87,7 @@ def pattern_of(line):
 
 
 def missing_lines(lines, printed):
-    """Those of `lines` that do not stand in `printed`, in this order."""
+    """Returns those of `lines` that `printed` does not contain in this order."""
     rest, missing = [line.strip() for line in printed.splitlines()], []
     for line in lines:
         if line.strip() in ("", "…"):
@@ -131,7 +131,7 @@ def run_script(script, checkout, variables):
 
 
 def end_group(group):
-    """Ends the servers that a block has started in the background; they get ten seconds to end their own children."""
+    """Ends the servers that a block has started in the background; they have ten seconds to end their own children."""
     for ending in (signal.SIGTERM, signal.SIGKILL):
         for _ in range(100):
             try:
@@ -166,7 +166,7 @@ def run_page(build, path, slow):
 
 
 def list_not_run():
-    """Every block that no test runs, with the reason; there may not be more than MOST_NOT_RUN."""
+    """Lists every block that no test runs, with the reason; at most MOST_NOT_RUN are allowed."""
     status = count = 0
     for path in markdown.documents():
         page = markdown.read(path)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the C++ blocks of a page as files, so that what is printed is what is compiled.
+"""Writes the C++ blocks of a page to files, so that the code on the page is the code that is compiled.
 
     write_code_files.py PAGE FOLDER
 
-A comment right before a block names its file: <!-- file: spu/wireframe/wireframe.h -->. Every C++ block must have one."""
+A comment directly before a block names its file: <!-- file: spu/wireframe/wireframe.h -->. Every C++ block must have one."""
 
 import sys
 from pathlib import Path

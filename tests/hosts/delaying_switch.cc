@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// delaying_switch MICROSECONDS INTERFACE…: an Ethernet switch between these interfaces that hands every frame
-// on only after that time, as a network of machines would; the kernel's own bridge knows no delay. Prints
-// "ready" when it hands frames on, and runs until it is killed. Frames keep their virtio header, so that
-// neither checksums nor segmentation are done here.
+// delaying_switch MICROSECONDS INTERFACE...: an Ethernet switch between these interfaces that forwards every
+// frame only after that time, as a network of machines would; the kernel's own bridge cannot delay. Prints
+// "ready" when it forwards frames, and runs until it is killed. Frames keep their virtio header, so neither
+// checksums nor segmentation are computed here.
 #include <arpa/inet.h>
 #include <linux/if_ether.h>
 #include <linux/if_packet.h>
@@ -30,7 +30,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Address = std::array<unsigned char, ETH_ALEN>;
 
-constexpr std::size_t header_bytes = 10;  // of a virtio_net_hdr, whose own declaration C++ cannot read
+constexpr std::size_t header_bytes = 10;  // of a virtio_net_hdr, whose declaration is not C++
 constexpr std::size_t longest_frame = header_bytes + (1 << 16) + 64;
 constexpr int receive_buffer_bytes = 16 << 20;
 
@@ -45,7 +45,7 @@ void check(int result, const std::string& what) {
 }
 
 int port_at(const std::string& interface) {
-  // With a protocol, it would get the frames of all interfaces until it is bound to its own.
+  // With a protocol, the socket would receive frames of all interfaces until it is bound to its own.
   const int port = socket(AF_PACKET, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   check(port, "a packet socket");
   const int on = 1;
@@ -93,7 +93,7 @@ class Switch {
 
  private:
   void receive(std::size_t port) {
-    // An interface that is down gives an error once, and goes on when it is up again.
+    // An interface that is down returns an error once, and works again when it is up.
     for (;;) {
       const ssize_t bytes = recv(ports_[port], room_.data(), room_.size(), 0);
       if (bytes < 0) return;
@@ -107,7 +107,7 @@ class Switch {
     const auto known = port_of_.find(address_at(frame, 0));
     for (std::size_t port = 0; port < ports_.size(); ++port) {
       if (port == frame.from || (known != port_of_.end() && known->second != port)) continue;
-      // A frame that cannot be handed on is lost, as on any network.
+      // A frame that cannot be sent is lost, as on any network.
       [[maybe_unused]] const ssize_t sent = send(ports_[port], frame.bytes.data(), frame.bytes.size(), 0);
     }
   }

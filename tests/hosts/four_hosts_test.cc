@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Render nodes on four hosts behind a viewer on the first: the image of one machine, over a network, and what
-// becomes of it when a host is cut off or a rank stands still.
+// Render nodes on four hosts, and a viewer on the first: the image is that of one machine, over a network, and
+// the viewer goes on when a host is cut off or a rank stops.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -36,12 +36,12 @@ using clients::operator+;
 
 constexpr int all_hosts = 4;
 constexpr int microseconds_on_the_way = 200;
-/// Frames of a full turn, after which images come again.
+/// Frames of a full turn, after which images repeat.
 constexpr int turn = 12;
 
 const Words turning = {"--orbit", "30"};
 
-/// The four hosts, for all tests of this program.
+/// The four hosts, shared by all tests of this program.
 class Network : public testing::Environment {
  public:
   explicit Network(std::string obstacle) : obstacle_(std::move(obstacle)) { shared() = this; }
@@ -66,7 +66,7 @@ class Network : public testing::Environment {
   }
   void TearDown() override { folder_.reset(); }
 
-  /// Why there is none; empty when there is.
+  /// Why there is no network; empty if there is one.
   const std::string& obstacle() const { return obstacle_; }
 
  private:
@@ -120,7 +120,7 @@ class FourHosts : public clients::CommandTest {
     run_well({"ip", "link", "set", fmt::format("port{}", number), state});
   }
 
-  /// What the nodes drew up to now, as `--save-frames` of this folder has it.
+  /// How many images the nodes have drawn, counted in the folder of `--save-frames`.
   std::size_t drawn_by_nodes(const std::string& folder) const {
     std::error_code not_yet;
     const auto all = fs::directory_iterator(file(folder), not_yet);
@@ -139,7 +139,7 @@ class FourHosts : public clients::CommandTest {
     return left;
   }
 
-  /// The PSNR of the worst frame of a viewer that turned under Understudy, against the viewer alone.
+  /// The PSNR of the worst frame of a turning viewer under Understudy, against the viewer alone.
   double worst_of(const std::string& bare, const std::string& under, int frames) const {
     double worst = HUGE_VAL;
     for (int number = 0; number < frames; ++number)
@@ -158,7 +158,7 @@ int count_of(const std::string& text, const std::string& wanted) {
   return count;
 }
 
-/// 'n' a frame that the nodes drew, 'v' one that the viewer did, with their numbers in a row: "n4 v30 n7".
+/// Who drew the frames, 'n' for nodes, 'v' for the viewer, with the number of frames in a row: "n4 v30 n7".
 std::string who_drew(const nlohmann::json& report) {
   std::string text;
   char who = 0;
@@ -203,7 +203,7 @@ TEST_F(FourHosts, GiveTheImageOfOneMachineOverTheNetwork) {
   }
   const nlohmann::json report = json("report.json");
   const auto exchanged = report.at("exchanged").at("bytes").get<std::uint64_t>();
-  // Three of four ranks are elsewhere, and so are about as many of the engine's texels.
+  // Three of four ranks are on other hosts, and so are about three quarters of the engine's texels.
   const std::uint64_t texels = fs::file_size(clients::engine_file()) / 2;
   fmt::print(
       "4 ranks on 4 hosts: at most {:.2g} from 4 on one; {} bytes sent, of them {} between parts of images\n",
@@ -217,8 +217,8 @@ TEST_F(FourHosts, GiveTheImageOfOneMachineOverTheNetwork) {
   EXPECT_EQ(left_behind(), "");
 }
 
-/// Runs a turning viewer on four hosts, does `harm` after its third frame, and looks at what follows: it must
-/// go on by itself, and then with as many nodes again as `nodes_after`.
+/// Runs a turning viewer on four hosts, does `harm` after its third frame, and checks what follows: the viewer
+/// must go on by itself, and then with `nodes_after` nodes again.
 class Harmed : public FourHosts {
  protected:
   Outcome after(const std::function<void(Child&)>& harm, std::size_t nodes_after) {
@@ -238,7 +238,7 @@ class Harmed : public FourHosts {
     EXPECT_TRUE(until([&] { return child.out().find("frame 2:") != std::string::npos; })) << child.err();
     const std::vector<pid_t> before = processes("understudy-node");
     EXPECT_EQ(before.size(), std::size_t(all_hosts));
-    // The viewer saves frames for as long as it is waited for: without all hosts there is nothing to wait for.
+    // The viewer saves frames until it is ended: without all hosts there is nothing to wait for.
     if (HasFailure()) return {-1, child.out(), child.err()};
     harm(child);
     EXPECT_TRUE(until([&] { return says("the render nodes are gone"); })) << child.err();
@@ -251,7 +251,7 @@ class Harmed : public FourHosts {
     EXPECT_EQ(outcome.status, 128 + SIGTERM) << outcome.err;
 
     const std::string drew = who_drew(json("report.json"));
-    // The last one may not be there in full.
+    // The last frame may be incomplete.
     const int frames = int(names_in(file("under"), "frame_").size()) - 1;
     const double worst = worst_of("bare", "under", frames);
     fmt::print("worst of {} frames PSNR {:.2f} dB, drawn by nodes (n) and the viewer (v): {}\n{}", frames,

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# network.sh SWITCH MICROSECONDS HOSTS FOLDER [RATE]: that many hosts, host1 and so on, as network namespaces, each with
-# one connection of 1 Gbit/s, or of that rate, to a switch that hands frames on so much later. For a process in namespaces of its own (mounts,
-# network), which alone sees all of this; it goes with them. FOLDER gets the hosts' names, and what the switch says.
+# network.sh SWITCH MICROSECONDS HOSTS FOLDER [RATE]: makes HOSTS hosts, host1 and so on, as network namespaces,
+# each with one connection of 1 Gbit/s, or of RATE, to a switch that forwards frames after a delay of
+# MICROSECONDS. For a process in its own namespaces (mounts, network), which alone sees all of this; it
+# disappears with them. FOLDER gets the hosts' names, and the output of the switch.
 set -e
 switch=$1 delay=$2 hosts=$3 folder=$4 rate=${5:-1gbit}
 
@@ -25,7 +26,7 @@ done
 mount --bind "$folder/names" /etc/hosts
 # shellcheck disable=SC2086 # one word a port
 setsid "$switch" "$delay" $ports >"$folder/switch.log" 2>&1 </dev/null &
-# Whoever started this script may kill its process group once it has ended: by then the switch is out of it.
+# The caller may kill this script's process group once it has ended: by then the switch has left it.
 until grep -q "^ready" "$folder/switch.log"; do
   kill -0 $! || { cat "$folder/switch.log" >&2; exit 1; }
   sleep 0.01

@@ -18,7 +18,7 @@
 namespace hosts {
 namespace {
 
-/// Interfaces and named namespaces.
+/// Network interfaces and named network namespaces.
 std::set<std::string> networks_of_the_machine() {
   std::set<std::string> found;
   std::error_code missing;
@@ -34,8 +34,8 @@ int status_of(pid_t child) {
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
-/// The first process of the namespace: whoever loses its parent becomes its child. It ends when `test` does,
-/// and all others with it.
+/// The first process of the namespace: orphans become its children. It ends when `test` does, and all others
+/// with it.
 [[noreturn]] void reap_until(pid_t test) {
   for (;;) {
     int status = 0;

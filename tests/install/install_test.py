@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""install_test.py BUILD: what `cmake --install` leaves runs, from any place and without the build, and programs are built with it."""
+"""install_test.py BUILD: what `cmake --install` installs runs from any place, without the build, and other programs build with it."""
 
 import os
 import re
@@ -16,9 +16,9 @@ ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(sys.argv.pop(1)).resolve()
 ENVIRONMENT = {"PATH": "/usr/bin:/bin", "HOME": "/nonexistent", "OMPI_ALLOW_RUN_AS_ROOT": "1",
                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "UNDERSTUDY_SPEED_GUARD": "off"}
-# Environment Modules of Debian and of Fedora, and Lmod.
+# Environment Modules on Debian and on Fedora, and Lmod.
 MODULES = ("/usr/share/modules/init/bash", "/usr/share/Modules/init/bash", "/usr/share/lmod/lmod/init/bash")
-# With what divides the loader's lists.
+# With the characters that separate entries of the loader's lists.
 AWKWARD = "a prefix:with both"
 
 
@@ -82,20 +82,20 @@ class Installed(unittest.TestCase):
                   'echo "man $MANPATH"; module unload understudy; command -v understudy || echo gone')
         said = output_of("bash", "-c", script, "bash", start, place)
         self.assertRegex(said, r"(?m)^understudy \d")
-        # Ends with nothing, which stands for the system's pages.
+        # Ends with an empty entry, which stands for the system's pages.
         self.assertIn(f"man {place}/share/man:\n", said)
         self.assertTrue(said.endswith("gone\n"), said)
 
     def test_no_installed_file_names_the_build(self):
         for place in (self.prefix, self.development):
             for path in place.rglob("*"):
-                # Archives hold the paths of their sources, for debuggers.
+                # Archives contain the paths of their sources, for debuggers.
                 if path.is_file() and not path.is_symlink() and path.suffix != ".a":
                     self.assertNotIn(str(BUILD).encode(), path.read_bytes(), path)
 
     def test_programs_alone_are_executable(self):
         for path in self.prefix.rglob("*"):
-            # Some distributions have libraries executable, others not.
+            # Libraries are executable on some distributions, and not on others.
             if path.is_file() and not path.is_symlink() and ".so" not in path.name:
                 self.assertEqual(bool(path.stat().st_mode & stat.S_IXUSR), path.parent.name == "bin", path)
 

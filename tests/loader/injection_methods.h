@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The three injection methods, as a user opens them.
+// The three injection methods, as a user selects them.
 #pragma once
 
 #include <ostream>

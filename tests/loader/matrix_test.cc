@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The injection method matrix: which way of opening OpenGL is caught by which injection method. It needs
-// neither X nor a GPU: the driver under the injection method (UNDERSTUDY_DRIVER_DIR) says what it is asked; the
-// system's own OpenGL, reached past the injection method, says nothing.
+// The matrix of injection methods: which ways of opening OpenGL each injection method intercepts. Needs neither
+// X nor a GPU: the driver behind the injection method (UNDERSTUDY_DRIVER_DIR) prints what it is asked for; the
+// system's own OpenGL, reached without interception, prints nothing.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -18,10 +18,10 @@ namespace {
 using namespace understudy::testing;
 
 enum class Expected {
-  hit,    ///< the call came through the injection method
-  miss,   ///< it went to the system's OpenGL as if we were not there, and the application is well
-  crash,  ///< the one pattern that an injection method cannot serve: README.md of interceptor/ says which and
-          ///< why
+  hit,    ///< the call was intercepted
+  miss,   ///< it went to the system's OpenGL, as if we were not there, and the application works
+  crash,  ///< the one pattern that an injection method cannot serve: README.md of interceptor/ names it and
+          ///< gives the reason
 };
 
 struct WayIn {

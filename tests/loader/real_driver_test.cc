@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// glxinfo and eglinfo ask a driver nearly everything that can be asked. Under an injection method they must
-// hear the same.
+// glxinfo and eglinfo query nearly everything that a driver can be asked. Under an injection method they must
+// get the same answers.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/types.h>
@@ -17,7 +17,7 @@ namespace {
 
 using namespace understudy::testing;
 
-/// An X server for as long as the object lives. Empty display when there is none to be had.
+/// An X server, as long as the object lives. `display` is empty if none could be started.
 class VirtualScreen {
  public:
   VirtualScreen() {
@@ -28,7 +28,7 @@ class VirtualScreen {
       close(ready[0]);
       const std::string descriptor = std::to_string(ready[1]);
       if (freopen("/dev/null", "w", stderr) == nullptr) _exit(127);
-      // -noreset: else a client that comes just as the last one goes is turned away now and then.
+      // -noreset: otherwise a client that connects just as the last one leaves is sometimes refused.
       execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-noreset", "-screen", "0", "640x480x24",
              nullptr);
       _exit(127);

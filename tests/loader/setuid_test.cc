@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs that run with their file's owner's rights: the loader lets nobody in, and they must work all the
-// same.
+// Programs that run with the rights of their file's owner: the loader allows no injection, and they must work
+// all the same.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs that use several names of OpenGL. glibc compares a requested name with the SONAMEs that are loaded
-// already before it asks anyone, so the order decides whether a later name is still ours: every order is tried,
-// on the system's own driver, because it is the real libraries that carry those SONAMEs.
+// Programs that use several names of OpenGL. glibc first compares a requested name with the SONAMEs of the
+// loaded libraries, so the order decides whether a later name still leads to ours. Every order is tested, with
+// the system's own driver, because the real libraries have those SONAMEs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ std::string joined(const std::vector<std::string>& words) {
 
 class SeveralNames : public ::testing::TestWithParam<InjectionMethod> {
  protected:
-  /// Every name that the program opened must lead to us.
+  /// Checks that every name that the program opens leads to our library.
   static void expect_ours(const std::string& program, const std::vector<std::string>& names) {
     std::vector<std::string> command{CLIENTS "/" + program};
     command.insert(command.end(), names.begin(), names.end());
@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(InjectionMethods, SeveralNames,
                                            InjectionMethod::audit),
                          [](const auto& info) { return name_of(info.param); });
 
-/// The injection methods that see paths; a folder of names cannot.
+/// The injection methods that see paths; a folder of names does not.
 class AbsolutePaths : public SeveralNames {};
 
 TEST_P(AbsolutePaths, LeadToUsEvenWhenTheDriverIsLoadedFromThere) {

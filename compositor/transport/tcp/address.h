@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a service is to be found: a Unix socket of this machine, or a host and a port.
+// Where a service is found: at a Unix socket of this machine, or at a host and a port.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ struct TcpAddress {
   std::string text() const;
 };
 
-/// "host:port" or "[v6]:port"; ":port" and "port" mean this machine alone (127.0.0.1). Nothing for the path of
-/// a Unix socket, which has a '/' or no colon. Throws std::runtime_error for what is neither, with what to
-/// write.
+/// Parses "host:port" or "[v6]:port"; ":port" and "port" mean this machine alone (127.0.0.1). Returns null for
+/// the path of a Unix socket, which has a '/' or no colon. Throws std::runtime_error for anything else, with
+/// what to write instead.
 std::optional<TcpAddress> tcp_address_of(const std::string& text);
 
 }  // namespace understudy::compositor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a handshake leaves: a socket whose other end has proved itself, and the keys of the session.
+// The result of a handshake: a socket whose other end is authenticated, and the keys of the session.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@ namespace understudy::compositor {
 
 struct AuthenticatedSocket {
   FileDescriptor socket;
-  std::optional<SessionKeys> keys;  ///< none: both ends are on this machine, and wanted no encryption
+  std::optional<SessionKeys> keys;  ///< null: both ends are on this machine, and chose no encryption
 };
 
 }  // namespace understudy::compositor

@@ -13,9 +13,9 @@ namespace understudy::compositor {
 namespace {
 
 constexpr int zstd_level = 1;
-constexpr double newest_counts = 0.5;   ///< of what is known then
+constexpr double newest_counts = 0.5;   ///< weight of the newest measurement
 constexpr int tried_again_after = 200;  ///< blocks
-/// To decompress: a fraction of the time to compress, for both.
+/// Time to compress and decompress, relative to compression alone; the same for both codecs.
 constexpr double there_and_back = 1.3;
 
 }  // namespace

@@ -19,7 +19,7 @@ Secret nobodys_secret() {
   return Secret(std::as_bytes(std::span(random)));
 }
 
-/// `client_side`: agreed on with the client's key of its file; `server_side`: with the server's.
+/// `client_side` is agreed on with the key of the client's file, `server_side` with that of the server's.
 Secret secret_of_keys(const std::optional<Secret>& client_side, const std::optional<Secret>& server_side,
                       const PublicKey& client, const PublicKey& server) {
   if (!client_side || !server_side) return nobodys_secret();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// By what an end of a connection over TCP proves who it is: a secret that both ends have, or a key of its own,
-// whose public half the other end knows. A server may have both.
+// What an end of a connection over TCP proves its identity by: a secret that both ends have, or a key of its
+// own, whose public half the other end knows. A server may have both.
 //
-// With keys, the secret of a session's proofs is what only the two can compute (a triple Diffie-Hellman, as in
-// Noise's KK without the static pair; Perrin 2018): from the client's key of the session and the server's of
-// its file, and the other way around. So whoever steals the key of one end can pretend to be that end, and
-// nobody else to it.
+// With keys, the proofs of a session use a secret that only the two ends can compute (a triple Diffie-Hellman,
+// as in Noise's KK without the static pair; Perrin 2018): from the client's session key and the server's file
+// key, and the other way around. So whoever steals the key of one end can impersonate that end, but nobody else
+// to it.
 #pragma once
 
 #include <optional>
@@ -19,8 +19,8 @@ namespace understudy::compositor {
 class Credentials {
  public:
   explicit Credentials(const Secret& secret) : secret_(secret) {}
-  /// `known`: of a client, the server's key alone; of a server, those of all of its clients. Of a server,
-  /// `secret` lets in those who have it, too.
+  /// `known` is the server's key for a client, and the keys of all its clients for a server. With `secret`, a
+  /// server also accepts clients that have the secret.
   Credentials(const KeyPair& own, std::vector<PublicKey> known, std::optional<Secret> secret = {})
       : secret_(std::move(secret)), own_(own), known_(std::move(known)) {}
 
@@ -28,8 +28,8 @@ class Credentials {
   /// Of a client's key file; zeros with a shared secret.
   PublicKey public_key() const;
 
-  /// The secret of the proofs of a session, with what the other end said. Of no use, and as long in the making,
-  /// for whoever is not known.
+  /// Returns the secret of a session's proofs, from the keys that the other end sent. For an unknown end it is
+  /// useless, but takes as long to compute.
   Secret secret_with_server(const KeyPair& of_session, const PublicKey& their_of_session) const;
   Secret secret_with_client(const KeyPair& of_session, const PublicKey& their_of_session,
                             const PublicKey& their_of_file) const;

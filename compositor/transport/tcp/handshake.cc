@@ -73,7 +73,7 @@ Nonce fresh_nonce() {
   return nonce;
 }
 
-/// `verdict` is part of the server's proof, so that nobody can turn one into another.
+/// The server's proof includes `verdict`, so that nobody can turn one verdict into another.
 Mac proof(const Secret& secret, std::string_view label, std::span<const std::byte> said,
           std::uint32_t verdict = 0) {
   Buffer text(label.size() + said.size() + sizeof verdict);
@@ -165,7 +165,7 @@ void ServerHandshake::take_proof(std::span<const std::byte> message) {
   if (step_ != Step::proof || message.size() != sizeof theirs) throw HandshakeFailed("it spoke out of turn");
   std::memcpy(theirs.data(), message.data(), sizeof theirs);
   if (!same(theirs, proof(*secret_, from_client, said_))) {
-    // Without a proof: it shows nothing of the secret to whoever has not got it.
+    // Without a proof: a client without the secret learns nothing about it.
     last_words_ = buffer_of(VerdictWords{std::uint32_t(AdmissionVerdict::wrong_secret)});
     throw HandshakeFailed(
         "its secret is not the one of --secret-file here (give both machines the same file), or its key is not "

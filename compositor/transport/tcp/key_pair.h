@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of X25519 keys (Bernstein 2006): of one session, or those of a key file (key_file.h).
+// Pairs of X25519 keys (Bernstein 2006): of one session, or of a key file (key_file.h).
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@ constexpr std::size_t private_key_bytes = 32;
 
 using PublicKey = std::array<unsigned char, public_key_bytes>;
 
-/// Wiped when it goes.
+/// Wiped on destruction.
 class KeyPair {
  public:
-  /// Fresh ones.
+  /// Makes a new pair.
   KeyPair();
   explicit KeyPair(std::span<const unsigned char, private_key_bytes> private_key);
   KeyPair(const KeyPair&) = default;
@@ -28,7 +28,7 @@ class KeyPair {
 
   const PublicKey& public_key() const { return public_; }
   std::span<const unsigned char, private_key_bytes> private_key() const { return private_; }
-  /// What this pair and that of `theirs` agree on, which nobody else can know; nothing where `theirs` is no
+  /// Returns what this pair and that of `theirs` agree on, which nobody else can know; null if `theirs` is no
   /// key.
   std::optional<Secret> shared_with(const PublicKey& theirs) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the two ends of a connection over TCP say to each other on their own account.
+// Messages that the two ends of a connection over TCP send for the connection's own sake.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 namespace understudy::compositor {
 
 enum class LineMessage : std::uint16_t {
-  alive = 1,  ///< from an end that has nothing else to say
+  alive = 1,  ///< from an end that has nothing else to send
   last = alive
 };
 

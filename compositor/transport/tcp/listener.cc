@@ -15,11 +15,11 @@ namespace understudy::compositor {
 
 namespace {
 
-/// Connections taken in one step: those that are here already get their turn in between.
+/// Connections accepted in one step: pending clients get their turn in between.
 constexpr int accepted_at_once = 64;
 constexpr std::chrono::seconds say_every{1};
 
-/// Some hundred bytes at the beginning of a connection; who does not take these is not waited for.
+/// Sends a few hundred bytes at the beginning of a connection; does not wait for clients that do not read them.
 bool tell(int socket, std::span<const std::byte> bytes) {
   return ::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT) == ssize_t(bytes.size());
 }
@@ -65,7 +65,7 @@ void Listener::step() {
       ++i;
       continue;
     }
-    // Whoever is accepted becomes a process, which forgets all pending clients that there are then.
+    // The process of an accepted client forgets all pending clients; this one must not be among them.
     PendingClient heard = std::move(pending_[i]);
     pending_.erase(pending_.begin() + std::ptrdiff_t(i));
     if (heard.let_in)
@@ -90,7 +90,7 @@ void Listener::accept_all() {
 }
 
 void Listener::make_room() {
-  // The oldest, which has had the longest time: whoever has just come may not have had his say yet.
+  // The oldest has had the longest time; the newest may not have had time to send anything.
   pending_.erase(pending_.begin());
 }
 
@@ -122,7 +122,7 @@ bool Listener::hear(PendingClient& pending) {
       return false;
     }
     if (got <= 0) {
-      // Who connects and leaves without a word only wanted to know whether somebody is here.
+      // A client that connects and leaves without a word only checked whether somebody listens.
       if (have > 0) drop(pending, "it left before it had proved that it has the secret");
       return false;
     }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where clients of other machines come in: a listening socket, whoever has come and not yet proved that it has
-// the secret, and nothing else. Pending clients cost a descriptor each, have limits::hello_patience, and when
-// there are more than limits::max_pending_clients the one that has got least far, of these the oldest, makes
-// room.
+// Accepts clients of other machines: a listening socket, and the clients that have connected and not yet proved
+// that they have the secret. Each pending client holds a descriptor for at most limits::hello_patience. Above
+// limits::max_pending_clients the oldest is closed.
 #pragma once
 
 #include <poll.h>
@@ -27,30 +26,30 @@ struct ListenerLimits {
 class Listener {
  public:
   using Say = std::function<void(const std::string&)>;
-  /// Whether a client with these wishes may come in.
+  /// Decides whether a client with this request is accepted.
   using Admission = std::function<AdmissionVerdict(const ConnectionRequest&)>;
-  /// A client that was told that it may.
+  /// Receives a client that has been told that it is accepted.
   using Accept = std::function<void(AuthenticatedSocket client, const ConnectionRequest& connection_request)>;
 
-  /// `credentials` must outlive the listener. Who wants no encryption is only asked about where both ends are
-  /// on this machine. `say` gets a line about who was not let in, at most one a second. Throws
-  /// std::runtime_error where nobody can listen.
+  /// `credentials` must outlive the listener. A client that requests no encryption is passed to `admission`
+  /// only if both ends are on this machine. `say` gets a line about clients that were not accepted, at most one
+  /// a second. Throws std::runtime_error if it cannot listen.
   Listener(const TcpAddress& address, const Credentials& credentials, Admission admission, Accept accept,
            Say say);
   Listener(const TcpAddress& address, const Credentials& credentials, Admission admission, Accept accept,
            Say say, const ListenerLimits& limits);
 
-  /// With the port that was given if any would do.
+  /// With the actual port, if any port would do.
   const TcpAddress& address() const { return address_; }
   std::size_t pending_clients() const { return pending_.size(); }
 
   /// Adds the descriptors to wait for.
   void poll_fds(std::vector<pollfd>& fds) const;
-  /// When a pending client's time is up; the distant future without any.
+  /// When the next pending client's time is up; far in the future if there is none.
   Deadline next_deadline() const;
   /// Handles what has happened, without waiting.
   void step();
-  /// In a child process after fork(): closes all that it has inherited, without a word to anybody.
+  /// In a child process after fork(): closes all inherited sockets without sending anything.
   void forget();
 
  private:
@@ -58,13 +57,13 @@ class Listener {
     FileDescriptor socket;
     Deadline until;
     ServerHandshake handshake;
-    std::vector<std::byte> heard;  ///< of the message that is coming
-    bool let_in = false;           ///< it has heard so
+    std::vector<std::byte> heard;  ///< of the message that is arriving
+    bool let_in = false;           ///< it has been told so
   };
 
   void accept_all();
   void make_room();
-  /// False when the pending client is done with, one way or the other.
+  /// Returns false when the client is no longer pending, accepted or not.
   bool hear(PendingClient& pending);
   AdmissionVerdict verdict_on(const PendingClient& pending) const;
   void drop(const PendingClient& pending, const std::string& why);
@@ -79,7 +78,7 @@ class Listener {
   std::vector<PendingClient> pending_;  ///< the oldest first
   Deadline accept_again_{};
   Deadline say_again_{};
-  std::size_t unsaid_ = 0;  ///< were dropped since the last line
+  std::size_t unsaid_ = 0;  ///< clients dropped since the last line
 };
 
 }  // namespace understudy::compositor

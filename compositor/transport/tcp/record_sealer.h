@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sender's end of one direction of an encrypted session (record.h).
+// The sender of one direction of an encrypted session (record.h).
 #pragma once
 
 #include <sodium/crypto_secretstream_xchacha20poly1305.h>
@@ -22,14 +22,14 @@ class RecordSealer {
   RecordSealer& operator=(const RecordSealer&) = delete;
   ~RecordSealer();
 
-  /// What is to be sent for `plain`, of at most max_record_bytes; valid until the next call.
+  /// Returns what is to be sent for `plain`, of at most max_record_bytes; valid until the next call.
   std::span<const std::byte> seal(std::span<const std::byte> plain);
 
  private:
   crypto_secretstream_xchacha20poly1305_state state_{};
   std::vector<std::byte> record_;  ///< room for the stream's head and the longest record
-  bool begun_ = false;             ///< the stream's head has been given out
-  std::uint32_t records_ = 0;      ///< of this key
+  bool begun_ = false;             ///< the stream's head has been returned
+  std::uint32_t records_ = 0;      ///< sealed with this key
 };
 
 }  // namespace understudy::compositor

@@ -16,7 +16,7 @@ namespace understudy::compositor {
 
 namespace {
 
-/// What is still on its way when one direction has ended.
+/// For what is still on its way when one direction has ended.
 constexpr std::chrono::seconds last_words_patience{2};
 
 }  // namespace
@@ -26,7 +26,7 @@ Deadline Relay::rest_due() const {
 }
 
 void Relay::send_here(const Message& message, Bytes payload, int attach) {
-  // Who is slow to take messages slows down the connection; who has gone is noticed by his socket.
+  // A slow reader slows down the connection; one that has gone is detected by its socket.
   here_.send(message.type, message.sequence, {&payload, 1}, limits::server_patience, attach);
 }
 
@@ -56,7 +56,7 @@ void Relay::hand_on(const MessageHeader& header) {
     for (std::size_t have = 0; have < block_.size();) {
       const std::size_t got = here_.receive_payload(std::span(block_).subspan(have));
       have += got;
-      // Who is stopped here, by a debugger or a shell, is not gone.
+      // A process here that is stopped, by a debugger or a shell, has not gone.
       if (got == 0 && !wait_until_ready(here_.fd(), POLLIN, tcp_.alive_due())) tcp_.send_alive();
     }
     tcp_.send_payload(block_);
@@ -80,7 +80,7 @@ std::string Relay::run() {
   std::condition_variable changed;
   int ended = 0;
   std::string why;
-  // One direction: `next` takes from `from` until it cannot.
+  // One direction: calls `next` until it throws.
   const auto direction = [&](int from, int to, const std::function<void()>& next) {
     std::string reason;
     try {
@@ -88,14 +88,14 @@ std::string Relay::run() {
     } catch (const ConnectionAbandoned& error) {
       reason = error.what();
     } catch (const ConnectionLost&) {
-      // Its reader is told by what follows.
+      // The shutdown below tells the reader.
     } catch (const std::exception& error) {
       reason = error.what();
     }
-    // Locked before the shutdown: that ends the other direction, too, which does not know why.
+    // Locked before the shutdown, which also ends the other direction, without a reason of its own.
     const std::scoped_lock lock(mutex);
     if (ended++ == 0) why = reason;
-    // The other side hears the end after all that was said before it.
+    // The other side sees the end after all that was sent before it.
     ::shutdown(from, SHUT_RD);
     ::shutdown(to, SHUT_WR);
     changed.notify_all();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Carries messages between a Unix socket of this machine and a connection over TCP, both ways at once, until
-// one of the two ends. There is one at each end of a connection; applications, node groups and GL servers know
-// nothing of TCP.
+// Forwards messages between a Unix socket of this machine and a connection over TCP, in both directions at
+// once, until one of the two ends. There is a relay at each end of a connection; applications, node groups and
+// GL servers never use TCP.
 //
-// What is not bytes, as a descriptor, stays on its machine: who carries for nodes (render_relay.h) or for a
-// GL server says in the two functions below what becomes of it.
+// Anything but bytes, such as a descriptor, stays on its machine: the relays for nodes (render_relay.h) and for
+// a GL server handle it in carry_out() and carry_back().
 #pragma once
 
 #include <atomic>
@@ -18,25 +18,25 @@ namespace understudy::compositor {
 
 class Relay {
  public:
-  /// Both must outlive it.
+  /// Both must outlive the relay.
   Relay(Connection& here, TcpConnection& tcp) : here_(here), tcp_(tcp) {}
   virtual ~Relay() = default;
   Relay(const Relay&) = delete;
   Relay& operator=(const Relay&) = delete;
 
-  /// Returns when both directions have ended: a moment after the first of them. Why that did, if not because
-  /// somebody left in an orderly way; else empty.
+  /// Returns when both directions have ended, shortly after the first of them. Returns why that one ended;
+  /// empty if a peer left in an orderly way.
   std::string run();
 
  protected:
-  /// Whether carry_out() is to get this message from here even if it is long. Other long messages are handed on
-  /// as they come: applications wait until they have left, and lines may be slow.
+  /// Whether carry_out() gets this message from here even if it is long. Other long messages are forwarded as
+  /// they arrive: applications wait until they have been sent, and connections may be slow.
   virtual bool needs_whole(const MessageType&) const { return false; }
-  /// What came from here, and goes to the connection. On a thread of its own, as the next.
+  /// Forwards a message from here to the connection. On a thread of its own, like carry_back().
   virtual void carry_out(Message message);
-  /// The other way.
+  /// Forwards a message from the connection to here.
   virtual void carry_back(Message message);
-  /// When rest() is called if nothing comes from here until then.
+  /// When rest() is called, if nothing comes from here until then.
   virtual Deadline rest_due() const;
   virtual void rest() {}
 

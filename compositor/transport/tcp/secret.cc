@@ -60,7 +60,7 @@ bool make_private_file(const std::filesystem::path& file, std::string_view what,
   const FileDescriptor opened(::mkostemp(fresh.data(), O_CLOEXEC));
   const bool written =
       opened && ::write(opened.get(), contents.data(), contents.size()) == ssize_t(contents.size());
-  // Appears at its place whole or not at all, and takes nobody's place.
+  // The file appears complete or not at all, and replaces no other.
   const bool made = written && ::link(fresh.c_str(), file.c_str()) == 0;
   const int reason = errno;
   if (opened) ::unlink(fresh.c_str());

@@ -11,7 +11,7 @@
 
 namespace understudy::compositor {
 
-/// Wiped when it goes.
+/// Wiped on destruction.
 class Secret {
  public:
   explicit Secret(std::span<const std::byte> contents);
@@ -26,21 +26,20 @@ class Secret {
   std::array<unsigned char, 32> key_{};
 };
 
-/// What is in a file that must be the user's own, with mode 0600; empty where it has not `least` to `most`
-/// bytes. `what` it is, and where one comes from (`origin`), is said in errors. Throws std::runtime_error.
+/// Returns the contents of a file that must belong to the user, with mode 0600; empty if it has not `least` to
+/// `most` bytes. Errors name `what` it is and where to get one (`origin`). Throws std::runtime_error.
 std::vector<std::byte> read_private_file(const std::filesystem::path& file, std::string_view what,
                                          std::string_view origin, std::size_t least, std::size_t most);
 
-/// Makes a file with mode 0600, whole or not at all. False where there is one already. Throws
+/// Makes a file with mode 0600, complete or not at all. Returns false if there is one already. Throws
 /// std::runtime_error.
 bool make_private_file(const std::filesystem::path& file, std::string_view what,
                        std::span<const std::byte> contents);
 
-/// Throws std::runtime_error, with what to do: no such file, another user's, others may read it, too short to
-/// be a secret.
+/// Throws std::runtime_error, with what to do: no such file, another user's, readable by others, wrong length.
 Secret read_secret(const std::filesystem::path& file);
 
-/// The same; makes the file where there is none, with mode 0600 and 32 random bytes. True in `made` then.
+/// The same, but makes the file if there is none, with mode 0600 and 32 random bytes, and sets `made`.
 Secret read_or_make_secret(const std::filesystem::path& file, bool& made);
 
 }  // namespace understudy::compositor

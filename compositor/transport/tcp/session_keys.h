@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fresh keys for each session over TCP. Each end makes a pair of keys for this session alone and says the
-// public one in the handshake, whose proofs cover both. What the two agree on (libsodium's crypto_kx), the
-// secret of the proofs and all that the handshake said make one key for each direction (BLAKE2b). So whoever
-// learns the secret later cannot read what he has recorded (Diffie, van Oorschot, Wiener 1992: authenticated
-// key exchange, forward secrecy).
+// Fresh keys for each session over TCP. Each end makes a key pair for this session alone and sends the public
+// key in the handshake, whose proofs cover both. What the two agree on (libsodium's crypto_kx), the secret of
+// the proofs and all messages of the handshake make one key for each direction (BLAKE2b). So whoever learns the
+// secret later cannot decrypt recorded sessions (Diffie, van Oorschot, Wiener 1992: authenticated key exchange,
+// forward secrecy).
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace understudy::compositor {
 
 constexpr std::size_t session_key_bytes = 32;
 
-/// Those of one end: it receives with the key that the other end sends with. Wiped when they go.
+/// The keys of one end: it receives with the key that the other end sends with. Wiped on destruction.
 struct SessionKeys {
   std::array<unsigned char, session_key_bytes> receive{};
   std::array<unsigned char, session_key_bytes> send{};
@@ -30,7 +30,7 @@ struct SessionKeys {
 
 enum class Side { client, server };
 
-/// `said`: the handshake up to the proofs, both public keys among it. Throws MalformedMessage where `theirs` is
+/// `said` is the handshake up to the proofs, including both public keys. Throws MalformedMessage if `theirs` is
 /// no key.
 SessionKeys session_keys(Side side, const KeyPair& own, const PublicKey& theirs, const Secret& secret,
                          std::span<const std::byte> said);

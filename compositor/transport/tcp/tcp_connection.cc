@@ -19,13 +19,13 @@ namespace understudy::compositor {
 
 namespace {
 
-/// Shorter blocks travel as they are.
+/// Shorter blocks are sent uncompressed.
 constexpr std::size_t least_compressed = 512;
-/// Shorter pieces share a record; longer ones are sealed from where they lie.
+/// Shorter pieces share a record; longer ones are sealed without a copy.
 constexpr std::size_t least_record = std::size_t(1) << 14;
 
-/// The peer went before it had said all: a listener with too many pending clients may do that, and takes the
-/// next try.
+/// The peer closed the connection before the handshake ended: a listener with too many pending clients may do
+/// that, and may accept the next attempt.
 class WentEarly : public HandshakeFailed {
  public:
   using HandshakeFailed::HandshakeFailed;
@@ -47,7 +47,7 @@ std::vector<std::byte> read_exactly(int socket, std::size_t size, Deadline deadl
 }
 
 void write_all(int socket, std::span<const std::byte> bytes) {
-  // Some hundred bytes at the beginning of a connection: they always fit.
+  // A few hundred bytes at the beginning of a connection: they always fit.
   if (::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT) != ssize_t(bytes.size()))
     throw WentEarly("it closed the connection without a word: look at host and port");
 }
@@ -104,7 +104,7 @@ double TcpConnection::bytes_per_second() const {
 
 bool TcpConnection::peer_is_silent() const {
   if (Clock::now() < heard_at_.load() + patience_) return false;
-  // What has come and was not read yet has been said, too.
+  // Bytes that have arrived and were not read yet count, too.
   return !wait_until_ready(socket_.get(), POLLIN, Clock::now());
 }
 
@@ -118,7 +118,7 @@ void TcpConnection::wait_for_room() {
   const Deadline begun = Clock::now();
   bool was_silent = false;
   while (!wait_until_ready(socket_.get(), POLLOUT, Clock::now() + patience_ / 4)) {
-    // Once may be the moment between another thread's reading and its saying so.
+    // A single time may lie between another thread's reading and its update of heard_at_.
     const bool silent = peer_is_silent();
     if (silent && was_silent) give_up_silent_line();
     was_silent = silent;
@@ -134,7 +134,7 @@ void TcpConnection::write(std::span<const Bytes> pieces, bool more) {
     write_as_they_are(pieces, more);
 }
 
-/// The line carries a record while the next one is sealed.
+/// One record is sent while the next one is sealed.
 void TcpConnection::write_records(std::span<const Bytes> pieces, bool more) {
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const bool more_pieces = more || i + 1 < pieces.size();
@@ -161,7 +161,7 @@ void TcpConnection::write_gathered(bool more) {
 
 void TcpConnection::write_as_they_are(std::span<const Bytes> pieces, bool more) {
   std::vector<iovec> left;
-  // sendmsg() takes pointers to non-const and does not write.
+  // sendmsg() takes pointers to non-const, but does not write.
   for (const Bytes& piece : pieces)
     if (!piece.empty()) left.push_back({const_cast<std::byte*>(piece.data()), piece.size()});
   msghdr message{};
@@ -261,7 +261,7 @@ std::optional<Message> TcpConnection::took(std::size_t count) {
   if (!opener_) return reader_.took(count);
   if (!opener_->took(count)) return std::nullopt;
   const std::size_t plain = opener_->plain_bytes();
-  // Records within a block are opened to their place.
+  // Records within a block are opened in place.
   if (const std::span<std::byte> place = reader_.room(); plain <= place.size()) {
     opener_->open(place.first(plain));
     return plain == 0 ? std::nullopt : reader_.took(plain);

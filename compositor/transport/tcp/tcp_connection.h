@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages over a TCP connection whose two ends have proved themselves (handshake.h), in encrypted records
-// (record.h) but where both ends wanted none. One thread may send while another receives.
+// Messages over a TCP connection whose two ends are authenticated (handshake.h), in encrypted records
+// (record.h) unless both ends chose none. One thread may send while another receives.
 //
-// A peer may be busy for long and take nothing (a GL server at a call, a node at a volume), and looks like a
-// line that is cut. So each end says that it is there when it says nothing else, and who is silent is gone.
+// A peer may be busy for long and read nothing (a GL server in a call, a node with a volume), which looks like
+// a cut connection. So an end that sends nothing else sends signs of life, and a silent end is considered gone.
 #pragma once
 
 #include <array>
@@ -26,15 +26,15 @@
 
 namespace understudy::compositor {
 
-/// What a connection has done in one direction.
+/// What a connection has carried in one direction.
 struct TcpTraffic {
   std::atomic<std::uint64_t> messages = 0;
-  std::atomic<std::uint64_t> payload_bytes = 0;  ///< of messages, as those who speak here see them
-  std::atomic<std::uint64_t> bytes = 0;          ///< that travelled, heads among them
-  std::array<std::atomic<std::uint64_t>, codec_count> blocks{};  ///< by how they were compressed
+  std::atomic<std::uint64_t> payload_bytes = 0;                  ///< of messages, before compression
+  std::atomic<std::uint64_t> bytes = 0;                          ///< that were sent, heads included
+  std::array<std::atomic<std::uint64_t>, codec_count> blocks{};  ///< by codec
 };
 
-/// The line is cut, or who is at its other end stands still.
+/// The connection is cut, or the process at its other end has stopped.
 class ConnectionAbandoned : public ConnectionLost {
  public:
   using ConnectionLost::ConnectionLost;
@@ -42,26 +42,25 @@ class ConnectionAbandoned : public ConnectionLost {
 
 class TcpConnection {
  public:
-  /// Accepts messages of the protocols `spoken`, which must outlive it. A peer that is silent for `patience` is
-  /// gone.
+  /// Accepts messages of the protocols `spoken`, which must outlive the connection. A peer that is silent for
+  /// `patience` is considered gone.
   TcpConnection(AuthenticatedSocket peer, Protocols spoken, std::uint64_t max_payload,
                 std::chrono::milliseconds patience = limits::connection_patience);
 
   int fd() const { return socket_.get(); }
   double bytes_per_second() const;
 
-  /// Sends the payload made of `parts`. Throws ConnectionLost: the peer is gone; ConnectionAbandoned: it is
-  /// silent, or has taken nothing for limits::server_patience.
+  /// Sends the payload made of `parts`. Throws ConnectionLost if the peer has gone, and ConnectionAbandoned if
+  /// it is silent or has read nothing for limits::server_patience.
   void send(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts);
-  /// The same for a message whose payload follows by send_payload() as it comes. Nothing else may be sent until
-  /// it is there.
+  /// Begins a message whose payload follows in calls of send_payload(), as it arrives. Nothing else may be sent
+  /// until the payload is complete.
   void begin(MessageType type, std::uint64_t sequence, std::uint64_t payload_bytes);
   void send_payload(Bytes some);
-  /// Says that this end is there, in the midst of a message that was begun, too. Due at alive_due() when
-  /// nothing else is sent until then.
+  /// Sends a sign of life, also within a message. Due at alive_due() if nothing else is sent until then.
   void send_alive();
   Deadline alive_due() const { return sent_at_ + patience_ / 4; }
-  /// Waits for a message as long as the peer says that it is there. Throws ConnectionAbandoned, ConnectionLost
+  /// Waits for a message as long as the peer sends signs of life. Throws ConnectionAbandoned, ConnectionLost
   /// and MalformedMessage.
   Message receive();
 
@@ -86,22 +85,22 @@ class TcpConnection {
   std::optional<RecordSealer> sealer_;
   std::optional<RecordOpener> opener_;
   std::vector<std::byte> gathered_;  ///< for the next record
-  std::vector<std::byte> opened_;    ///< of a record in which messages end and begin
-  std::size_t taken_ = 0;            ///< of opened_
+  std::vector<std::byte> opened_;    ///< a record in which messages end and begin
+  std::size_t taken_ = 0;            ///< how much of opened_ was read
   TcpMessageReader reader_;
   MessageType begun_{};
-  std::uint64_t begun_left_ = 0;  ///< bytes of it that are still to be sent
+  std::uint64_t begun_left_ = 0;  ///< bytes of that message that are still to be sent
   Deadline sent_at_ = Clock::now();
   std::atomic<Deadline> heard_at_ = Clock::now();
   TcpTraffic sent_;
   TcpTraffic received_;
-  std::map<std::pair<std::uint8_t, std::uint16_t>, CodecChoice> choices_;  ///< by what is sent
+  std::map<std::pair<std::uint8_t, std::uint16_t>, CodecChoice> choices_;  ///< by message type
   BlockCompressor compressor_;
   std::vector<std::byte> compressed_;
 };
 
-/// Connects, and has both sides prove themselves. Throws std::runtime_error: what is wrong at `address`, and
-/// what to do there.
+/// Connects, and authenticates both sides. Throws std::runtime_error: what is wrong at `address`, and what to
+/// do there.
 AuthenticatedSocket connect_tcp(const TcpAddress& address, const Credentials& credentials,
                                 const ConnectionRequest& connection_request, Deadline deadline);
 

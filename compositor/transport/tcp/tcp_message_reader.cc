@@ -16,7 +16,7 @@ std::span<std::byte> TcpMessageReader::room() {
     case Step::block_head:
       return std::as_writable_bytes(std::span(&head_, 1)).subspan(have_);
     default:
-      // Blocks that are not compressed are read to their place.
+      // Uncompressed blocks are read in place.
       return head_.codec() == 0 ? std::span(message_.payload).last(head_.bytes - have_)
                                 : std::span(compressed_).subspan(have_);
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes of a connection over TCP become messages.
+// Makes messages of the bytes of a connection over TCP.
 //
-// A message there is the header of message.h and then its payload in blocks: how many bytes a block stands for
-// (at most limits::max_tcp_block_bytes) and, in the next four bytes, how many travel (low 24 bits) and how
-// they are compressed (high 8 bits). A block of nothing says that its sender is there, and waits for the rest.
+// A message over TCP is the header of message.h, then its payload in blocks. A block begins with its size
+// before compression (at most limits::max_tcp_block_bytes) and, in the next four bytes, its size as sent (low
+// 24 bits) and its codec (high 8 bits). An empty block is a sign of life from a sender that waits for the rest.
 #pragma once
 
 #include <cstddef>
@@ -36,10 +36,10 @@ class TcpMessageReader {
 
   /// Where the next bytes belong; never empty.
   std::span<std::byte> room();
-  /// The first `count` bytes of room() are there now; the message that they complete, if any. Throws
+  /// The first `count` bytes of room() have been filled. Returns the message that they complete, if any. Throws
   /// MalformedMessage: nothing more can be read then.
   std::optional<Message> took(std::size_t count);
-  /// The beginning of a message is here.
+  /// Whether the beginning of a message has arrived.
   bool unfinished() const { return step_ != Step::header || have_ > 0; }
 
  private:
@@ -51,7 +51,7 @@ class TcpMessageReader {
   Protocols spoken_;
   std::uint64_t max_payload_;
   Step step_ = Step::header;
-  std::size_t have_ = 0;  ///< bytes of what is being read
+  std::size_t have_ = 0;  ///< bytes of the part being read
   MessageHeader header_;
   BlockHead head_;
   std::vector<std::byte> compressed_;

@@ -37,11 +37,11 @@ AddressList resolve(const TcpAddress& address, int flags) {
 }
 
 void set(int socket, int level, int option, int value) {
-  // Where a kernel does not know one of these, connections are only slower to notice a cut.
+  // If a kernel lacks one of these, connections are only slower to notice a cut.
   ::setsockopt(socket, level, option, &value, sizeof value);
 }
 
-/// Connects without blocking; 0, or the reason.
+/// Connects without blocking; returns 0, or errno's reason.
 int try_to_connect(int socket, const addrinfo& to, Deadline deadline) {
   if (::connect(socket, to.ai_addr, to.ai_addrlen) == 0) return 0;
   if (errno != EINPROGRESS) return errno;
@@ -82,10 +82,10 @@ bool is_loopback(int socket, decltype(&::getpeername) name) {
 
 void set_connection_options(int socket) {
   set(socket, IPPROTO_TCP, TCP_NODELAY, 1);
-  // Who sends sees how fast the line takes it, not how fast memory is filled.
+  // The sender then sees how fast the connection takes bytes, not how fast memory is filled.
   set(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, int(limits::max_tcp_block_bytes));
-  // Who is gone is known by his silence (tcp_connection.h). The kernel's own time-out also ends connections to
-  // who only takes nothing for a while, and must come later.
+  // A peer that has gone is detected by its silence (tcp_connection.h). The kernel's own time-out also ends
+  // connections to a peer that only reads nothing for a while, and must come later.
   set(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, int(2 * limits::server_patience.count()));
 }
 
@@ -120,7 +120,7 @@ FileDescriptor connect_to(const TcpAddress& address, Deadline deadline) {
   for (const addrinfo* to = list.get(); to != nullptr; to = to->ai_next, --left) {
     FileDescriptor result(::socket(to->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     if (!result) throw std::runtime_error(fmt::format("cannot make a socket: {}", std::strerror(errno)));
-    // An address whose packets vanish must leave time for those behind it.
+    // An address whose packets vanish must leave time for the addresses after it.
     const Deadline now = Clock::now();
     error = try_to_connect(result.get(), *to, now + (deadline - now) / left);
     if (error != 0) continue;

@@ -18,24 +18,24 @@ namespace {
 
 using volume::Pixel;
 
-/// Of the error that is asked for, what early termination may use up.
+/// Share of the requested error that early ray termination may use.
 constexpr double share_of_termination = 0.125;
 constexpr float finest_termination = 5e-6F;
 constexpr float coarsest_termination = 0.02F;
-/// Rays that are looked at are a few of many: what calibration says must leave room for the others.
+/// Few rays are checked: the calibrated error must leave this much room for the others.
 constexpr double room_for_others = 0.6;
-/// The same, once the worst of an image have been looked at.
+/// The same, after the worst pixels of an image have been checked.
 constexpr double room_when_proven = 0.7;
-/// Of the time that passes, what looking may take.
+/// Share of the elapsed time that checks may take.
 constexpr double share_of_looking = 0.02;
 constexpr double most_credit_ms = 10;
 constexpr std::size_t proving_suspects = 48;
 constexpr std::size_t proving_spread = 128;
 constexpr double proving_ms = 150;
-constexpr int patient_frames = 4;            ///< before time moves the setting again
-constexpr double finest_samples = 1.0 / 32;  ///< in texels; what lies between is linear
-/// Images of each kind to see whether half floats save time, and so much of it that they are worth their
-/// error.
+constexpr int patient_frames = 4;            ///< before a limit of time changes the setting again
+constexpr double finest_samples = 1.0 / 32;  ///< in texels, which are interpolated linearly in between
+/// Images that are timed with floats and with half floats. Half floats are worth their error if they take less
+/// than `worthwhile` of the time.
 constexpr int turns_to_compare = 3;
 constexpr double worthwhile = 0.95;
 
@@ -89,7 +89,8 @@ std::optional<volume::RenderRequest> Budget::request(
   return request;
 }
 
-/// Segments between slices grow longer as the camera turns, and nodes know only so much beside their own.
+/// Selects a setting whose segments, longer as the camera turns, fit in the nodes' ghost layer; false if none
+/// does.
 bool Budget::keep_ghost_layer(const volume::VolumeDescription& volume) {
   const auto& front = calibration_.front;
   const auto fits = [&](std::size_t i) {
@@ -112,7 +113,7 @@ bool Budget::keep_ghost_layer(const volume::VolumeDescription& volume) {
 
 void Budget::choose() {
   const auto& front = calibration_.front;
-  // Errors fall along the front, and times rise.
+  // Along the front, errors decrease and times increase.
   const auto good =
       asked_.error > 0
           ? std::ranges::find_if(
@@ -125,7 +126,7 @@ void Budget::choose() {
   use(chosen_);
 }
 
-/// As calibration found it: no image of it has been looked at.
+/// Selects a setting with its calibrated error and time; no image of it has been checked.
 void Budget::use(std::size_t of_front) {
   chosen_ = of_front;
   as_halves_ = false;
@@ -134,7 +135,8 @@ void Budget::use(std::size_t of_front) {
   frames_as_chosen_ = 0;
 }
 
-/// Looks where the image changes most with a finer setting: there it is wrong, if anywhere.
+/// Checks the pixels that a finer setting changes most, where errors are likeliest; goes finer until they are
+/// small.
 void Budget::prove(compositor::ImageService& service) {
   const auto& front = calibration_.front;
   do {
@@ -153,7 +155,7 @@ void Budget::prove(compositor::ImageService& service) {
   } while (worst_ > room_when_proven * asked_.error && go_finer());
 }
 
-/// Half floats between nodes, where they save time and what they round away is within the error.
+/// Uses half floats between nodes if they save time and their rounding stays within the error.
 void Budget::try_halves(compositor::ImageService& service) {
   if (worst_ > room_when_proven * asked_.error) return;
   volume::RenderRequest request = sampled_as(meaning_, setting());
@@ -161,7 +163,7 @@ void Budget::try_halves(compositor::ImageService& service) {
   compositor::Rendered in_halves;
   for (int turn = 0; turn < 2 * turns_to_compare; ++turn) {
     request.may_travel_as_halves = turn % 2 == 1;
-    request.termination = std::nextafter(request.termination, 1.0F);  // the same request is not cast again
+    request.termination = std::nextafter(request.termination, 1.0F);  // an equal request is not cast again
     const auto start = Clock::now();
     in_halves = service.render(request);
     const std::chrono::duration<double, std::milli> took = Clock::now() - start;
@@ -186,8 +188,8 @@ Setting Budget::setting() const {
   return setting;
 }
 
-/// Calibration ends where its few rays were exact enough. What is finer is taken to err no more, and to cost
-/// twice as much, until it is looked at.
+/// Calibration stops where its few rays were exact enough. A finer setting is assumed to have the same error
+/// and twice the cost until it is checked.
 Measured Budget::next_finer() const {
   const auto& front = calibration_.front;
   if (chosen_ + 1 < front.size()) return front[chosen_ + 1];
@@ -216,12 +218,12 @@ void Budget::look_at(compositor::ImageService& service, const volume::ImageView&
   const Clock::time_point now = Clock::now();
   const std::chrono::duration<double, std::milli> passed = now - looked_at_.value_or(now);
   looked_at_ = now;
-  // An image that was there already leaves the time in which it would have been cast.
+  // A reused image leaves the time that casting it would have taken.
   credit_ms_ = std::min(credit_ms_ + share_of_looking * passed.count() + (ms ? 0 : ms_), most_credit_ms);
   if (ms) ms_ = frames_as_chosen_++ == 0 ? *ms : 0.8 * ms_ + 0.2 * *ms;
   const auto count = std::size_t(std::max(0.0, credit_ms_) / ms_a_ray_);
   if (count > 0 && !image.rect.empty()) {
-    // Half where it was wrong before, half anywhere.
+    // Half of the pixels are suspects, the others are spread over the image.
     std::vector<Pixel> pixels = spread_over(image.rect, spread_, (count + 1) / 2);
     spread_ += pixels.size();
     for (std::size_t i = 0; i < count / 2 && i < suspects_.size(); ++i) pixels.push_back(suspects_[i]);
@@ -245,7 +247,7 @@ void Budget::look_at(compositor::ImageService& service, const volume::ImageView&
   tell(counters);
 }
 
-/// Moves along the front by one where the time that is asked for is not the time that images take.
+/// Moves along the front by one if images take more, or clearly less, than the requested time.
 void Budget::keep_time() {
   const auto& front = calibration_.front;
   if (frames_as_chosen_ < patient_frames) return;
@@ -261,7 +263,7 @@ void Budget::tell(BudgetCounters& counters) const {
   counters.ms = ms_;
   put_text(counters.setting, name_of(setting()));
   std::string note;
-  // A finer one would have been taken.
+  // Otherwise a finer setting would have been chosen.
   if (asked_.error > 0 && worst_ > asked_.error)
     note = fmt::format("the error that is asked for cannot be kept: {:.2g} is the best there is here{}", worst_,
                        times_are_known_ ? fmt::format(", at {:.3g} ms an image", ms_) : "");

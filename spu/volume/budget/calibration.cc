@@ -27,20 +27,20 @@ using volume::Pixel;
 using volume::PixelIntegral;
 using Clock = std::chrono::steady_clock;
 
-/// In texels along the ray through the middle, in the order of trying. Finer than one, samples are tried until
-/// two images in a row are alike enough; tables of segments take time to make.
+/// In texels along the ray through the middle of the image, in the order of their trial. Below one texel,
+/// samples are tried until two images in a row are similar enough; pre-integration tables take time to compute.
 constexpr std::array coarse_samples{4.0, 2.0, 1.0};
 constexpr std::array fine_samples{0.5, 0.25, 0.125, 0.0625, 0.03125};
 constexpr std::array segments_apart{1.0, 0.5, 2.0, 0.25, 0.125};
-/// The small image has about so many pixels where there is something to see.
+/// The volume covers about this many pixels of the small image.
 constexpr double small_image = 80.0 * 80.0;
-/// What may only save time is not tried after this.
+/// Settings that can only save time are not tried after this.
 constexpr double patience_ms = 400;
-/// Where an error is named, finer samples are tried so long: a slow or busy machine is to keep it, too.
+/// With a limit of the error, finer samples are tried until then: a slow or busy machine is to keep it, too.
 constexpr double patience_for_an_error_ms = 5000;
 constexpr double integrals_ms = 250;
 constexpr std::size_t least_integrals = 64;
-/// For what must be integrated, whatever time it takes: beyond this the nodes hang, or are asked too much.
+/// For integrals that are required: if they take longer, the nodes hang or are overloaded.
 constexpr double patience_with_integrals_ms = 5000;
 constexpr std::size_t spread_pixels = 64;
 constexpr std::size_t worst_pixels = 8;  ///< of each setting
@@ -53,7 +53,7 @@ std::array<float, 4> pixel_of(const ImageView& image, const Pixel& pixel) {
   return {image.rgba[at], image.rgba[at + 1], image.rgba[at + 2], image.rgba[at + 3]};
 }
 
-/// The same camera on fewer pixels. Opaque geometry is not in it: rays that see more cost more, and err more.
+/// The same camera with fewer pixels, and without opaque geometry: longer rays cost more, and err more.
 volume::RenderRequest on_fewer_pixels(volume::RenderRequest request, int times) {
   request.depth.reset();
   if (times == 1) return request;
@@ -81,7 +81,7 @@ double greatest_difference(const ImageView& a, const ImageView& b) {
   return double(most);
 }
 
-/// Nobody who is cheaper is as exact.
+/// Returns the Pareto front: the settings for which no cheaper one is as exact.
 std::vector<Measured> front_of(std::vector<Measured> all) {
   std::ranges::sort(all, {}, &Measured::ms);
   std::vector<Measured> front;
@@ -112,7 +112,8 @@ std::vector<Pixel> most_different(const ImageView& a, const ImageView& b, std::s
 }
 
 std::vector<Pixel> spread_over(const volume::Rect& rect, std::size_t first, std::size_t count) {
-  // Multiples of the plastic number's powers: any run of them lies evenly (Roberts 2018).
+  // R2 sequence (Roberts 2018): multiples of inverse powers of the plastic number; any part of it is spread
+  // evenly.
   constexpr double across = 0.7548776662466927, up = 0.5698402909980532;
   std::vector<Pixel> pixels;
   if (rect.empty()) return pixels;
@@ -149,7 +150,7 @@ double greatest_error(const ImageView& image, std::span<const Pixel> pixels,
 
 namespace {
 
-/// The setting with samples so many texels apart; none where the volume's ghost layer is too thin for it.
+/// The setting with samples `texels` apart; empty if the volume's ghost layer is too narrow for it.
 std::optional<Setting> setting_of(const Meaning& meaning, const volume::VolumeDescription& volume,
                                   volume::Method method, double texels, float termination) {
   const Setting setting{method, texels / meaning.texels_a_step, termination};
@@ -168,8 +169,8 @@ std::vector<Tried> tried_in_turn(compositor::ImageService& service, const Meanin
     const auto setting = setting_of(small, volume, method, texels, termination);
     if (!setting) return;
     volume::RenderRequest request = sampled_as(small, *setting);
-    service.render(request);  // prepares what depends on the table alone
-    request.termination = std::nextafter(request.termination, 1.0F);  // the same request is not cast again
+    service.render(request);  // prepares what depends on the transfer function alone
+    request.termination = std::nextafter(request.termination, 1.0F);  // an equal request is not cast again
     const auto begin = Clock::now();
     const compositor::Rendered rendered = service.render(request);
     tried.push_back({*setting, milliseconds_since(begin) * times * times, copy_of(rendered.image)});
@@ -185,8 +186,8 @@ std::vector<Tried> tried_in_turn(compositor::ImageService& service, const Meanin
   return tried;
 }
 
-/// For a service that loads parts for each image: all settings are rendered together, so that parts are loaded
-/// once. Loading hides the time of casting, so costs are numbers of samples; a segment takes two.
+/// For a service that loads parts for each image: renders all settings together, so that each part is loaded
+/// once. Loading hides the time of casting, so the cost is the number of samples; a segment counts as two.
 std::vector<Tried> tried_at_once(compositor::ImageService& service, const Meaning& small,
                                  const volume::VolumeDescription& volume, float termination) {
   std::vector<Tried> tried;
@@ -205,7 +206,8 @@ std::vector<Tried> tried_at_once(compositor::ImageService& service, const Meanin
   return tried;
 }
 
-/// Against integrals where settings differ most, and anywhere.
+/// Compares images with integrals at the pixels where settings differ most, and at others spread over the
+/// image.
 std::vector<Measured> measured(compositor::ImageService& service, const Meaning& small,
                                const std::vector<Tried>& tried) {
   const ImageView finest =
@@ -218,7 +220,7 @@ std::vector<Measured> measured(compositor::ImageService& service, const Meaning&
   const std::vector<Pixel> spread =
       spread_over(footprint(small.request, small.request.region), 0, spread_pixels);
   pixels.insert(pixels.end(), spread.begin(), spread.end());
-  // If time is up before all are integrated, then those of some settings are not all that are missing.
+  // If time is up before all are integrated, the missing ones must not all belong to the same settings.
   std::shuffle(pixels.begin(), pixels.end(), std::minstd_rand());
   const std::vector<PixelIntegral> integrals =
       integrals_of(service, small.request, pixels, least_integrals, integrals_ms);

@@ -19,7 +19,7 @@ using volume::Rgba;
 using volume::TransferFunction;
 using volume::Vec3;
 
-/// What of a request has no meaning without its own samples.
+/// Returns what in a request has no meaning without its own samples, if anything.
 std::optional<std::string> obstacle(const RenderRequest& request) {
   if (std::holds_alternative<volume::LinearMap>(request.classification))
     return "the texels are colours already, whose opacities are of the viewer's own samples";
@@ -33,7 +33,7 @@ std::optional<std::string> obstacle(const RenderRequest& request) {
   return std::nullopt;
 }
 
-/// Entries as a medium can have them: what was measured of a program may be off by rounding.
+/// Clamps entries to values that a medium can have: entries measured on a program may be off by rounding.
 TransferFunction believable(TransferFunction function) {
   for (Rgba& entry : function.entries) {
     for (float& value : entry) value = std::isfinite(value) ? std::max(value, 0.0F) : 0.0F;
@@ -42,7 +42,7 @@ TransferFunction believable(TransferFunction function) {
   return function;
 }
 
-/// Direction of the ray through the middle of the image, of any length; towards the far plane.
+/// Direction of the ray through the middle of the image towards the far plane, not normalised.
 std::optional<Vec3> middle_ray(const RenderRequest& request) {
   const auto clip_to_texture = volume::inverse(request.texture_to_clip);
   if (!clip_to_texture) return std::nullopt;
@@ -77,7 +77,7 @@ std::variant<Meaning, std::string> meaning_of(const RenderRequest& request, cons
   if (auto reason = obstacle(request)) return *std::move(reason);
   Meaning meaning{request};
   RenderRequest& meant = meaning.request;
-  meant.opacity_limit = 1;  // the integral has none, and hardly anything is behind one that is left
+  meant.opacity_limit = 1;  // the integral has none, and a limit that is no obstacle hides hardly anything
   meant.classification = believable(std::get<TransferFunction>(request.classification));
   const auto way = middle_ray(request);
   if (!way) return "nothing of it is in the image";
@@ -100,17 +100,17 @@ std::variant<Meaning, std::string> meaning_of(const RenderRequest& request, cons
 RenderRequest placed_as(const Meaning& meaning, const Setting& setting) {
   RenderRequest request = meaning.request;
   for (double& value : request.steps->metric) value /= setting.step;
-  // Segments cover the way from the entry on; samples stand for the half step on either side.
+  // Segments cover the ray from its entry on; a sample stands for half a step on either side.
   request.steps->first = setting.method == volume::Method::pre_integrated ? 0 : 0.5;
   request.method = setting.method;
-  if (request.termination > 0) request.termination = setting.termination;  // else rays go to their end
+  if (request.termination > 0) request.termination = setting.termination;  // else rays do not end early
   request.steps->cover_whole_ray = may_cover_whole_rays(request);
   request.may_travel_as_halves = setting.as_halves;
   return request;
 }
 
 TransferFunction table_as(const Meaning& meaning, const Setting& setting) {
-  // Tables of segments take time in the square of their entries.
+  // The time to compute a pre-integration table is quadratic in its entries.
   const std::size_t most_entries = setting.method == volume::Method::pre_integrated ? 512 : 1024;
   return volume::opacity_corrected(std::get<TransferFunction>(meaning.request.classification), setting.step,
                                    most_entries);

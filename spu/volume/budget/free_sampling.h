@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples that are not bound to the application's own: what a request means apart from where its samples lie,
-// and the same image from other samples.
+// Samples independent of the application's own: separates what a request shows from where its samples lie, and
+// composes requests for the same image with other samples.
 #pragma once
 
 #include <array>
@@ -11,35 +11,36 @@
 
 namespace understudy::spu {
 
-/// One way of taking samples.
+/// How samples are taken.
 struct Setting {
   volume::Method method = volume::Method::post_classified;
-  double step = 1;            ///< from one sample to the next, in the application's own
-  float termination = 5e-6F;  ///< as of RenderRequest
-  bool as_halves = false;     ///< nodes' parts of the image travel as half floats
+  double step = 1;            ///< distance between samples, in steps of the application
+  float termination = 5e-6F;  ///< as in RenderRequest
+  bool as_halves = false;     ///< nodes exchange parts of the image as half floats
   bool operator==(const Setting&) const = default;
 };
 
-/// In words.
+/// Describes the setting in words.
 std::string name_of(const Setting& setting);
 
-/// A request whose steps are a unit of length: one entry of its transfer function is what a homogeneous layer
-/// one step thick shows. Steps reach from slice to slice where the application draws slices, however slantingly
-/// a ray crosses them; a ray caster's steps are its own.
+/// A request whose step is a unit of length: an entry of its transfer function is the colour of a homogeneous
+/// layer one step thick. Where the application draws slices, a step reaches from slice to slice, at any angle
+/// between ray and slices; a ray caster's steps are its own.
 struct Meaning {
   volume::RenderRequest request;
-  double texels_a_step = 1;  ///< along the ray through the middle of the image
+  double texels_a_step = 1;  ///< texels per step, along the ray through the middle of the image
 };
 
-/// Or why there is none, in words that end in the report. `size` is the texture's.
+/// Returns the meaning of a request, or the reason why it has none, for the report. `size`: the texture's, in
+/// texels.
 std::variant<Meaning, std::string> meaning_of(const volume::RenderRequest& request,
                                               const std::array<int, 3>& size);
 
-/// The request with samples where the setting says, and still the opacities of whole steps.
+/// Returns the request with samples placed as `setting` specifies, but with the opacities of whole steps.
 volume::RenderRequest placed_as(const Meaning& meaning, const Setting& setting);
-/// The opacities of the setting's steps.
+/// Returns the transfer function with the opacities of the setting's steps.
 volume::TransferFunction table_as(const Meaning& meaning, const Setting& setting);
-/// Both.
+/// Returns the request with both.
 volume::RenderRequest sampled_as(const Meaning& meaning, const Setting& setting);
 
 }  // namespace understudy::spu

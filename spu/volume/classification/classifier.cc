@@ -13,7 +13,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Everything that fixed-function fragments depend on, as numbers to compare.
+/// Appends everything that fixed-function fragments depend on, as values to compare.
 void append_fixed_function_state(const DispatchTable& gl, std::vector<float>& key) {
   constexpr std::array<GLenum, 17> names = {
       GL_TEXTURE_ENV_MODE, GL_COMBINE_RGB,  GL_COMBINE_ALPHA,  GL_SRC0_RGB,       GL_SRC1_RGB,
@@ -54,8 +54,8 @@ void append_alpha_test(const DispatchTable& gl, std::vector<float>& key) {
   key.push_back(value);
 }
 
-/// Fog over the run: its number, observed at every vertex, as a map of the position, which is a camera that
-/// sees one coordinate.
+/// Returns fog over the run: its scalar, observed at every vertex, as an affine map of the position. The map is
+/// fitted like a camera with one coordinate.
 volume::Fog placed_fog(const Pipeline& pipeline, const RecognisedRun& run, const MeasuredFog& measured) {
   std::vector<ObservedVertex> vertices = run.polygons.vertices;
   for (std::size_t v = 0; v < vertices.size(); ++v) {
@@ -75,13 +75,13 @@ volume::Fog placed_fog(const Pipeline& pipeline, const RecognisedRun& run, const
 
 }  // namespace
 
-/// All that colours depend on: `values` are compared to know whether they must be probed, `inputs` to know
-/// whether an image must be compared.
+/// All that colours depend on: `values` decide whether colours must be probed, `inputs` whether an image must
+/// be compared.
 struct Classifier::Key {
   std::vector<float> values;
   VerificationSchedule::Inputs inputs;
 
-  /// Takes over as inputs what was appended to `values` since there were so many.
+  /// Appends all `values` from index `first` on to `inputs`.
   void take_inputs_from(std::size_t first,
                         VerificationSchedule::Effect effect = VerificationSchedule::Effect::measured) {
     for (std::size_t i = first; i < values.size(); ++i) inputs.push_back({values[i], effect});
@@ -133,7 +133,7 @@ Classifier::Key Classifier::key_of(const Pipeline& pipeline, const RecognisedRun
   }
   const std::size_t without_tables = key.values.size();
   append_tables(pipeline, key);
-  // Of a program that is not refused, samples alone address the tables.
+  // In a program that is not refused, only samples address the tables.
   key.take_inputs_from(without_tables, run.fragment.record != nullptr ? VerificationSchedule::Effect::predicted
                                                                       : VerificationSchedule::Effect::measured);
   return key;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stage that finds out which colours the application's pipeline gives to samples: probed where they are not
-// known (classification: Levoy 1988; pre-integrated: Engel, Kraus, Ertl 2001).
+// The stage that determines which colours the application's pipeline gives to samples. It probes the pipeline
+// if they are not known (classification: Levoy 1988; pre-integrated: Engel, Kraus, Ertl 2001).
 #pragma once
 
 #include <array>
@@ -30,8 +30,8 @@ struct GlContext;
 struct SliceColours {
   volume::Classification classification;
   std::optional<volume::Fog> fog;
-  std::optional<volume::SliceSegment> slice_segment;  ///< where colours are those of segments
-  VerificationSchedule::Inputs inputs;                ///< what they depend on
+  std::optional<volume::SliceSegment> slice_segment;  ///< if the colours are those of segments
+  VerificationSchedule::Inputs inputs;                ///< what the colours depend on
 };
 
 class Classifier {
@@ -40,12 +40,12 @@ class Classifier {
              FrameAccount& account)
       : context_(context), group_(group), session_(session), programs_(programs), account_(account) {}
 
-  /// The colours of `run`, drawn by `pipeline` from `texture`, whose values lie in `range`. Probes where
-  /// `known` does not hold, and leaves there what it has found. Throws Refusal.
+  /// Returns the colours of `run`, drawn by `pipeline` from `texture`, whose values lie in `range`. Probes them
+  /// unless `known` is still valid, and stores the result there. Throws Refusal.
   SliceColours classify(const Pipeline& pipeline, const RecognisedRun& run, const TextureDescription& texture,
                         const std::array<float, 2>& range, KnownColours& known, VolumeCounters& counters);
 
-  /// Counts colours or steps that were measured anew, with the reason; of an empty one, that they were known.
+  /// Counts colours or steps as measured anew, with the reason `why`, or, if that is empty, as known.
   void count_probe(std::string_view why);
 
  private:

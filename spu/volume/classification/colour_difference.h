@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours that were drawn, compared.
+// Comparison of colours that were drawn.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace understudy::spu {
 
-/// Over the four channels.
+/// Returns the largest difference over the four channels.
 float largest_difference(const volume::Rgba& a, const volume::Rgba& b);
 
-/// Whether all channels are numbers.
+/// Returns whether all channels are finite.
 bool finite(const std::vector<volume::Rgba>& colours);
 
 }  // namespace understudy::spu

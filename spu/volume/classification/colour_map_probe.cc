@@ -13,7 +13,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Whether texels in [0,1] may give colours outside of it.
+/// Returns whether texels in [0,1] may be mapped to colours outside of it.
 bool leaves_unit_interval(const std::array<float, 16>& matrix) {
   for (std::size_t row = 0; row < 4; ++row) {
     float low = 0;
@@ -27,7 +27,7 @@ bool leaves_unit_interval(const std::array<float, 16>& matrix) {
   return false;
 }
 
-/// Above which alpha fragments are kept; null where the alpha test is another comparison.
+/// The alpha test keeps fragments above this alpha; null if it uses another comparison.
 std::optional<float> least_alpha(const DispatchTable& gl) {
   GLint compare = 0;
   GLfloat reference = 0;
@@ -38,7 +38,8 @@ std::optional<float> least_alpha(const DispatchTable& gl) {
   return std::nullopt;
 }
 
-/// Colours all over the unit cube: black first, then each component alone, the columns of a map.
+/// Colours all over the unit cube. The first is black, the next have one component each: they give the map's
+/// columns.
 std::vector<float> some_colours(bool opaque) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
@@ -46,12 +47,12 @@ std::vector<float> some_colours(bool opaque) {
   for (float& x : texels) x = uniform(random);
   std::fill_n(texels.begin(), 20, 0.0F);
   for (std::size_t c = 0; c < 4; ++c) texels[4 * (c + 1) + c] = 1.0F;
-  // Colours without alpha have one everywhere, and what black gives is that alpha's column.
+  // Colours without alpha have alpha 1 everywhere, and black is mapped to the column of alpha.
   for (std::size_t i = 3; opaque && i < texels.size(); i += 4) texels[i] = 1.0F;
   return texels;
 }
 
-/// Row by row, from what the first texels of some_colours() became.
+/// The matrix, row by row, from what the first texels of some_colours() are mapped to.
 std::array<float, 16> matrix_of(const ProbedImage& mapped, bool opaque) {
   std::array<float, 16> matrix{};
   for (std::size_t row = 0; row < 4; ++row) {
@@ -71,7 +72,7 @@ volume::Rgba mapped_by(const std::array<float, 16>& matrix, const float* texel) 
   return mapped;
 }
 
-/// Shows the probe program colours.
+/// Probes the application's fragment pipeline with texels of chosen colours.
 class MapProbe {
  public:
   MapProbe(ProbeBench& bench, const GlContext& context, const TextureDescription& texture,
@@ -84,17 +85,18 @@ class MapProbe {
 
   const float* texel(std::size_t index) const { return &texels_[4 * index]; }
 
-  /// What all texels become, with the inputs given.
+  /// Returns what all texels are mapped to with `inputs`.
   ProbedImage mapped(const InputValues& inputs) {
     show(probe_edge, texels_);
     return bench_.draw(without_coordinate(fragment_, inputs), false);
   }
-  /// What one becomes, while one number runs from `low` in the first pixel to `high` in the last.
+  /// Returns what one texel is mapped to while `number` runs from `low` in the first pixel to `high` in the
+  /// last.
   ProbedImage along(std::size_t index, const InputNumber& number, float low, float high) {
     show(1, {texel(index), texel(index) + 4});
     return bench_.draw_along(fragment_, number, low, high, false);
   }
-  /// What a colour becomes at coordinates all over the volume.
+  /// Returns what a colour is mapped to at coordinates all over the volume.
   ProbedImage everywhere(const std::array<float, 4>& colour, const InputValues& inputs) {
     show(1, {colour.begin(), colour.end()});
     return bench_.draw(without_coordinate(fragment_, inputs), false);
@@ -113,7 +115,7 @@ class MapProbe {
   std::vector<float> texels_;
 };
 
-/// The map where fog is thinnest, and the fog over it.
+/// The map where the fog is thinnest, and the fog over it.
 struct FoggedMap {
   std::array<float, 16> matrix{};
   std::optional<MeasuredFog> fog;
@@ -130,7 +132,7 @@ bool is_map_of(const FoggedMap& map, const MapProbe& probe, const ProbedImage& m
   return true;
 }
 
-/// On which of the varying numbers colours depend.
+/// Returns the varying scalars that colours depend on.
 std::vector<InputNumber> telling_numbers(MapProbe& probe, const ProbedImage& mapped,
                                          const FragmentInputs& fragment) {
   std::vector<InputNumber> telling;
@@ -146,7 +148,7 @@ std::vector<InputNumber> telling_numbers(MapProbe& probe, const ProbedImage& map
   return telling;
 }
 
-/// Whether the fog, which was found with a few colours, holds for all of them.
+/// Returns whether the fog, which was measured with a few colours, holds for all of them.
 bool holds_for_all(MapProbe& probe, const FoggedMap& map, const FragmentInputs& fragment, bool premultiplied) {
   const MeasuredFog& fog = *map.fog;
   const std::size_t last = fog.entries.size() - 1;
@@ -165,7 +167,8 @@ bool holds_for_all(MapProbe& probe, const FoggedMap& map, const FragmentInputs& 
   return true;
 }
 
-/// The fog in the one number that colours depend on, and the map below it; null when there is no such thing.
+/// Returns the fog by `number`, the only scalar that colours depend on, and the map below it; null if colours
+/// do not depend on it as on fog.
 std::optional<FoggedMap> map_in_fog(MapProbe& probe, const FragmentInputs& fragment, const InputNumber& number,
                                     const ProbedImage& mapped, bool premultiplied, bool opaque) {
   for (const InputRange& tried : {widened(fragment.range, {number}), fragment.range}) {
@@ -183,7 +186,7 @@ std::optional<FoggedMap> map_in_fog(MapProbe& probe, const FragmentInputs& fragm
     fog->component = number.component;
     ProbedImage clearest = probe.mapped(with_number(fragment.first, number, fog->reference));
     FoggedMap map{.range = tried};
-    // What black becomes is the fog's; under one opacity everywhere it is part of the map.
+    // Black is mapped to the colour of the fog; if texels have no alpha, that colour is part of the map.
     for (std::size_t c = 0; c < 3 && !opaque; ++c) map.added[c] = clearest.front()[c];
     const ProbedImage seen = clearest;
     for (volume::Rgba& colour : clearest) {

@@ -8,11 +8,11 @@
 namespace understudy::spu {
 namespace {
 
-/// Half a step of an 8-bit framebuffer: what interpolating the number may cost, and what nobody sees.
+/// Half a step of an 8-bit framebuffer: above the error of interpolating over the scalar, and invisible.
 constexpr float same_as_fog = 2e-3F;
-/// Entries whose colours tell the fog from what it covers.
+/// This many entries are compared to separate the fog from the colours under it.
 constexpr std::size_t most_samples = 8;
-/// Every so many values along the number make one entry.
+/// Values of the scalar for each entry.
 constexpr std::size_t values_per_entry = 3;
 
 /// The application's framebuffer clamps fragments before it blends them.
@@ -21,7 +21,7 @@ volume::Rgba clamped(volume::Rgba colour) {
   return colour;
 }
 
-/// Entries that show something, spread evenly.
+/// Visible entries, spread evenly.
 std::vector<std::size_t> telling_entries(const std::vector<volume::Rgba>& table) {
   std::vector<std::size_t> visible;
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -34,14 +34,14 @@ std::vector<std::size_t> telling_entries(const std::vector<volume::Rgba>& table)
   return chosen;
 }
 
-/// Sums over samples of one component's products, each sample with what the added colour is multiplied by.
+/// Sums of products of one component over all samples; r is the factor of the added colour.
 struct Sums {
   double xx = 0, xy = 0, rx = 0, ry = 0, rr = 0;
 };
 
-using Samples = std::vector<std::vector<volume::Rgba>>;  ///< by entry, then by number
+using Samples = std::vector<std::vector<volume::Rgba>>;  ///< by entry, then by value of the scalar
 
-/// Where, among the numbers that are needed, the fog is thinnest: colours differ most.
+/// Returns the index of the needed value at which the fog is thinnest: where colours differ most.
 std::size_t clearest_number(const Samples& seen, const std::vector<float>& number,
                             const std::array<float, 2>& needed) {
   std::size_t clearest = 0;
@@ -60,11 +60,11 @@ std::size_t clearest_number(const Samples& seen, const std::vector<float>& numbe
   return clearest;
 }
 
-/// The fog at number v, against the colours where it is thinnest; null where there is none that explains all
+/// Returns the fog at value `v`, relative to the colours where it is thinnest; null if no fog explains all
 /// samples.
 std::optional<volume::Rgba> fog_at(const Samples& seen, bool premultiplied, std::size_t clearest,
                                    std::size_t v) {
-  // Least squares for y = weight x + r added over samples and components; r is one, or opacity.
+  // Least squares for y = weight x + r added over samples and components; r is 1 or, if premultiplied, opacity.
   std::array<Sums, 3> sums{};
   double above = 0;
   double below = 0;
@@ -83,7 +83,7 @@ std::optional<volume::Rgba> fog_at(const Samples& seen, bool premultiplied, std:
     above += sum.xy - sum.rx * sum.ry / sum.rr;
     below += sum.xx - sum.rx * sum.rx / sum.rr;
   }
-  // Samples of one colour do not tell weight and added colour apart, and need not.
+  // Samples of one colour do not separate weight and added colour, and need not.
   const double weight = below > 1e-6 ? above / below : 1.0;
   volume::Rgba entry{0, 0, 0, float(weight)};
   for (std::size_t c = 0; c < 3; ++c) entry[c] = float((sums[c].ry - weight * sums[c].rx) / sums[c].rr);
@@ -123,7 +123,7 @@ std::optional<MeasuredFog> measure_fog(const std::vector<volume::Rgba>& table, b
     } else if (number[v] > needed[1]) {
       break;
     } else {
-      // Before the first number that is needed, colours may do as they like: clamped ones are no fog.
+      // Below the needed values the fog need not explain the colours, which may be clamped there.
       fog.entries.clear();
     }
   }

@@ -12,7 +12,7 @@ namespace understudy::spu {
 
 struct KnownColours {
   std::optional<Probed> probed;
-  std::vector<float> probed_under;  ///< the state that decides what probing finds
+  std::vector<float> probed_under;  ///< state that decides what probing finds
   SampleRounding rounding;          ///< of slices and of ray casters
 };
 

@@ -7,12 +7,12 @@
 namespace understudy::spu {
 namespace {
 
-/// Multiples of 1/255 fall on entries of both, so that tables over 8-bit values keep their steps.
+/// Multiples of 1/255 fall on entries of either edge, so that tables over 8-bit values keep their steps.
 constexpr int finest_edge = 2 * 255 + 1;
 constexpr int coarse_edge = 255 + 1;
 
-/// Between entries of a coarse table colours may be off by about a step of 8 bits, to which drivers round where
-/// a texture holds no more; but on the average by next to nothing.
+/// Colours between entries of a coarse table may be off by about one 8-bit step, to which drivers round samples
+/// of 8-bit textures, but on average by almost nothing.
 constexpr double same_entry = 4e-3;
 constexpr double same_mean = 1e-4;
 
@@ -31,7 +31,7 @@ const volume::Rgba& entry_at(const volume::PreIntegrationTable& table, int front
   return table.entries[std::size_t(back) * std::size_t(table.edge) + std::size_t(front)];
 }
 
-/// Whether every second entry, interpolated, tells the others.
+/// Returns whether every second entry, interpolated, gives the others.
 bool coarse_suffices(const volume::PreIntegrationTable& fine) {
   double sum = 0;
   for (int back = 0; back < fine.edge; ++back) {

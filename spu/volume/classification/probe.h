@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Classification by probing: the application's own fragment pipeline is shown a texture whose texels are known,
-// draws into a float framebuffer, and what comes out is the transfer function. One mechanism for texture
-// environments, look-up textures, window/level uniforms and colour maps written in shader code: observe, don't
-// parse.
+// Classification by probing: the application's own fragment pipeline samples a texture with known texels and
+// draws into a float framebuffer; the result is the transfer function. One mechanism for texture environments,
+// look-up textures, window/level uniforms and colour maps in shader code: they are measured, not parsed.
 #pragma once
 
 #include <memory>
@@ -23,19 +22,19 @@ namespace understudy::spu {
 
 struct GlContext;
 
-/// What was found, for all runs whose inputs keep within a range.
+/// The result of probing, valid for all runs whose inputs stay within `range`.
 struct Probed {
   volume::Classification classification;
   std::optional<MeasuredFog> fog;
   InputRange range;
   std::optional<std::size_t>
-      segment_end{};  ///< the input that addresses the second samples of a pre-integration table
+      segment_end{};  ///< input that addresses the second sample of a pre-integrated segment
 };
 
 using ProbeFinding = std::variant<Probed, Refusal>;
 
 /// `range` is the interval of texel values that the table covers. Uses the current context's fragment state
-/// (texture environment, alpha test, uniforms) and leaves it untouched.
+/// (texture environment, alpha test, uniforms) and leaves it unchanged.
 ProbeFinding probe_classification(const GlContext& context, const Pipeline& pipeline,
                                   const TextureDescription& texture, const FragmentInputs& fragment,
                                   const std::array<float, 2>& range);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the application's fragment pipeline is shown texels that are known: a float framebuffer of its own, a
-// texture in the place of the volume, and a program whose inputs are given.
+// Runs the application's fragment pipeline on known texels: a float framebuffer of its own, a texture in place
+// of the volume, and a program whose inputs are given.
 #pragma once
 
 #include <array>
@@ -13,27 +13,27 @@
 
 namespace understudy::spu {
 
-/// Both the probe's image and its texture are squares of this edge: one texel a pixel.
+/// The image and the texture of a probe are squares of this edge: one texel per pixel.
 constexpr int probe_edge = 64;
 constexpr int probe_pixels = probe_edge * probe_edge;
 static_assert(probed_entries <= probe_pixels);
-/// Two probes of one sample agree to this; interpolation of our own inputs is exact, so only rounding remains.
+/// Two probes of one sample agree to this: our inputs are interpolated exactly, so only rounding remains.
 constexpr float same_colour = 2e-4F;
-/// Fog is interpolated between values of its number.
+/// The same under fog, which is interpolated between values of its scalar.
 constexpr float same_fogged_colour = 4e-3F;
 
 constexpr const char* more_than_the_sample = "the colour depends on more than the sample (position, lighting)";
 
-/// Row by row, one fragment a pixel.
+/// Row by row, one fragment per pixel.
 using ProbedImage = std::vector<volume::Rgba>;
 
-/// One component of one input.
+/// A scalar: one component of one input.
 struct InputNumber {
   std::size_t input = 0;  ///< in the order of FragmentInputs::inputs
   std::size_t component = 0;
 };
 
-/// The framebuffer, textures and vertex array of one probing; all gone afterwards.
+/// The framebuffer, textures and vertex array of one probing; the destructor deletes them.
 class ProbeBench {
  public:
   ProbeBench(const GlContext& context, const Pipeline& pipeline);
@@ -45,7 +45,7 @@ class ProbeBench {
   void own(GLuint program) { program_ = program; }
   GLuint program() const { return program_; }
 
-  /// Texels of the probe volume: width x height x 1, `components` floats each.
+  /// Uploads the texels of the probe volume: width x height x 1, as floats in `format`.
   void show(GLenum internal_format, GLenum format, int width, int height, const std::vector<float>& texels,
             const std::array<GLint, 4>& swizzle, bool with_swizzle) {
     show(internal_format, format, {width, height, 1}, texels, GL_NEAREST, swizzle, with_swizzle);
@@ -54,13 +54,13 @@ class ProbeBench {
             const std::vector<float>& texels, GLenum filter, const std::array<GLint, 4>& swizzle,
             bool with_swizzle);
 
-  /// One fragment a pixel; a pixel whose fragment was discarded keeps `background`. `across` and `up`: by how
-  /// much inputs grow over the image's edges; empty where they are constant.
+  /// Draws one fragment per pixel; a pixel whose fragment is discarded keeps `background`. `across` and `up`:
+  /// increase of the inputs over the width and height of the image; empty if they are constant.
   ProbedImage draw(const InputValues& values, bool with_alpha_test, const volume::Rgba& background = {},
                    const InputValues& across = {}, const InputValues& up = {});
 
-  /// The same with the inputs of `fragment`, while one number runs from `low` in the first pixel to `high` in
-  /// the last.
+  /// The same with the inputs of `fragment`, while the scalar `number` runs from `low` in the first pixel to
+  /// `high` in the last.
   ProbedImage draw_along(const FragmentInputs& fragment, const InputNumber& number, float low, float high,
                          bool with_alpha_test);
 
@@ -71,7 +71,7 @@ class ProbeBench {
 
   const DispatchTable& gl_;
   GLenum target_;
-  bool alpha_test_;  ///< asked before SavedState switches it off
+  bool alpha_test_;  ///< queried before SavedState disables it
   SavedState saved_;
   GLuint texture_ = 0;
   GLuint colour_ = 0;
@@ -80,24 +80,24 @@ class ProbeBench {
   GLuint program_ = 0;
 };
 
-/// The values of all inputs but the coordinate, in the order in which the probe program numbers them.
+/// Returns the values of all inputs but the coordinate, in the order in which the probe program numbers them.
 InputValues without_coordinate(const FragmentInputs& fragment, const InputValues& values);
 
-/// The numbers that vary over the run, the coordinate left out.
+/// Returns the scalars that vary over the run, other than those of the coordinate.
 std::vector<InputNumber> varying_numbers(const FragmentInputs& fragment);
 
-/// `inputs`, one number of which has another value.
+/// Returns `inputs` with the scalar `number` set to `value`.
 InputValues with_number(InputValues inputs, const InputNumber& number, float value);
 
-/// The range, and as much again on both sides where it is one: a view that turns does not ask for another
-/// probe.
+/// Returns `range` with the range of each of `numbers` extended by its length on both sides, so that a view
+/// that turns requires no new probe.
 InputRange widened(InputRange range, const std::vector<InputNumber>& numbers);
 
-/// Not a number where one of the colours is none.
+/// Returns the largest difference over all pixels and channels.
 float largest_difference(const ProbedImage& a, const ProbedImage& b);
 
-/// As the application's framebuffer stores fragments before it blends them: clamped, unless it is `floating`.
-/// False where a float framebuffer would hold what cannot be composed.
+/// Clamps a colour as the application's framebuffer stores it before blending, unless it is `floating`. Returns
+/// false if a float framebuffer would hold a colour that cannot be composed.
 bool clamp_as_stored(volume::Rgba& colour, bool floating);
 
 }  // namespace understudy::spu

@@ -15,7 +15,7 @@ void round_samples(volume::RenderRequest& request) {
 }
 
 bool may_be_rounded(const TextureDescription& texture) {
-  // Drivers filter with a border in float.
+  // Drivers filter in float if there is a border.
   return texture.type == volume::TexelType::u8 && texture.filter == volume::Filter::linear &&
          std::find(texture.wrap.begin(), texture.wrap.end(), volume::Wrap::border) == texture.wrap.end();
 }

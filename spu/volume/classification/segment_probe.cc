@@ -12,8 +12,8 @@
 namespace understudy::spu {
 namespace {
 
-/// Shows the probe program segments whose ends are known: the coordinate runs through the middle layer of
-/// three, and the input that may address the volume a second time through the lowest.
+/// Probes segments whose ends are known: the coordinate runs through the middle layer of three, and the input
+/// that may address the volume a second time through the lowest.
 class SegmentProbe {
  public:
   SegmentProbe(ProbeBench& bench, const GlContext& context, const TextureDescription& texture,
@@ -27,12 +27,12 @@ class SegmentProbe {
     show({probe_edge, 1, 3}, texels, GL_NEAREST);
     return draw(inputs, {0, 0.5F, in_lowest_layer, 1}, {}, {1, 0, 0, 0});
   }
-  /// One pair, at coordinates all over the volume.
+  /// One pair of values, at coordinates all over the volume.
   ProbedImage everywhere(float front, float back, const InputValues& inputs) {
     show({1, 1, 3}, {back, front, front}, GL_NEAREST);
     return draw(inputs, {0, 0, in_lowest_layer, 1}, {0.7F, 0.2F, 0, 0}, {0.1F, 0.8F, 0, 0});
   }
-  /// Texels that rise along all axes; the second sample lies `off` the first.
+  /// Texels that increase along all axes; the second sample is offset from the first by `off`.
   ProbedImage slope(const std::vector<float>& texels, const std::array<float, 3>& off) {
     show({2, 2, 2}, texels, GL_LINEAR);
     return draw(fragment_.first, {off[0], off[1], 0.5F + off[2], 1}, {1, 0, 0, 0}, {0, 1, 0, 0});
@@ -63,9 +63,9 @@ class SegmentProbe {
   std::size_t end_;
 };
 
-/// Whether colours between the ends of segments are those of the table where the field has a slope.
+/// Returns whether segments in a field with a slope have colours that the table does not have for their ends.
 bool slice_segments_see_neighbours(SegmentProbe& probe, const volume::PreIntegrationTable& table) {
-  constexpr double weight_error = 4.0 / 510;  // hardware may weight texels by 8 bits
+  constexpr double weight_error = 4.0 / 510;  // hardware may use 8-bit interpolation weights
   constexpr std::array<double, 3> slope{1.0 / 6, 2.0 / 6, 3.0 / 6};
   constexpr std::array<float, 3> off{0.03F, -0.05F, 0.04F};
   const double extent = double(table.high) - table.low;
@@ -96,7 +96,7 @@ bool slice_segments_see_neighbours(SegmentProbe& probe, const volume::PreIntegra
   return false;
 }
 
-/// Values all over the range.
+/// Returns values spread over the range.
 SegmentValues spread_over(const std::array<float, 2>& range) {
   SegmentValues spread{};
   for (std::size_t i = 0; i < spread.size(); ++i) {
@@ -106,7 +106,7 @@ SegmentValues spread_over(const std::array<float, 2>& range) {
   return spread;
 }
 
-/// Whether pairs have the colours of `some`, the image of all pairs, wherever they lie.
+/// Returns whether pairs have the colours of `some`, the image of all pairs, at all coordinates.
 bool same_everywhere(SegmentProbe& probe, const SegmentValues& spread, const ProbedImage& some,
                      const InputValues& inputs) {
   for (const std::size_t front : {std::size_t(0), segment_tile / 5, segment_tile / 2, segment_tile - 1}) {
@@ -119,7 +119,7 @@ bool same_everywhere(SegmentProbe& probe, const SegmentValues& spread, const Pro
   return true;
 }
 
-/// Whether they stay so when numbers other than those of input `end` run over `range`.
+/// Returns whether they still do while scalars other than those of input `end` run over `range`.
 bool same_over(SegmentProbe& probe, const SegmentValues& spread, const ProbedImage& some,
                const FragmentInputs& fragment, const InputRange& range, std::size_t end) {
   for (const InputNumber& number : varying_numbers(fragment)) {
@@ -157,7 +157,7 @@ std::optional<Probed> probe_segments(ProbeBench& bench, const GlContext& context
   for (volume::Rgba& entry : table.entries) {
     if (!clamp_as_stored(entry, pipeline.target.floating)) return std::nullopt;
   }
-  // Where the second sample lies is the geometry's matter, and may change.
+  // The geometry decides where the second sample lies, and may change.
   probed.range.low[end].fill(std::numeric_limits<float>::lowest());
   probed.range.high[end].fill(std::numeric_limits<float>::max());
   probed.segment_end = end;

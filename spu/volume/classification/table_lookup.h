@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The colour that a transfer function gives one value.
+// The colour that a transfer function assigns to a value.
 #pragma once
 
 #include "volume/classification.h"
 
 namespace understudy::spu {
 
-/// Linear between entries, constant outside of the table's range.
+/// Interpolates linearly between entries; constant outside of the table's range.
 volume::Rgba table_at(const volume::TransferFunction& table, float value);
 
 }  // namespace understudy::spu

@@ -11,8 +11,8 @@
 namespace understudy::spu {
 namespace {
 
-/// Whether the table has `value` in channel `c` of `entries` or between them. Between two it may have a peak or
-/// a step, which is taken to reach as far beyond them as they are apart.
+/// Returns whether `value` lies in the range of channel `c` of `entries`. Between two entries the table may
+/// have a peak or a step, which is assumed to exceed them by no more than their difference.
 bool is_among(float value, std::span<const volume::Rgba> entries, std::size_t c) {
   float low = entries.front()[c];
   float high = low;
@@ -25,13 +25,13 @@ bool is_among(float value, std::span<const volume::Rgba> entries, std::size_t c)
   return value >= low - apart - same_colour && value <= high + apart + same_colour;
 }
 
-/// Whether colours change where the field has a slope: the application looks at more than one place, which flat
-/// texels cannot show. The texels rise along all axes, and every sample must get a colour that the table has
-/// for about its value.
+/// Returns whether colours change in a field with a slope: the application samples more than one position,
+/// which constant texels cannot show. The texels increase along all axes, and every sample must have a colour
+/// that the table has near its value.
 bool sees_neighbours(ProbeBench& bench, const GlContext& context, const TextureDescription& texture,
                      const std::array<float, 2>& range, const InputValues& inputs, const ProbedImage& table,
                      bool stack) {
-  constexpr int weight_error = 32;  // entries: hardware may weight texels by 8 bits
+  constexpr int weight_error = 32;  // in entries: hardware may use 8-bit interpolation weights
   const std::array<double, 3> slope{1.0 / 6, 2.0 / 6, stack ? 0 : 3.0 / 6};
   const double extent = double(range[1]) - range[0];
   std::vector<float> texels;
@@ -42,7 +42,7 @@ bool sees_neighbours(ProbeBench& bench, const GlContext& context, const TextureD
   bench.show(probe_format(texture.base), upload_format(texture.base), {2, 2, 2}, texels, GL_LINEAR,
              texture.swizzle, context.version >= 330);
   const ProbedImage image = bench.draw(inputs, true);
-  // Between the texels' centres, and away from them: the slope has a bend there.
+  // Between the texels' centres, but not close to them, where the slope bends.
   for (int y = probe_edge / 4 + 2; y < 3 * probe_edge / 4 - 2; ++y) {
     for (int x = probe_edge / 4 + 2; x < 3 * probe_edge / 4 - 2; ++x) {
       const double place = slope[0] * ((x + 0.5) / probe_edge * 2 - 0.5) +
@@ -59,7 +59,7 @@ bool sees_neighbours(ProbeBench& bench, const GlContext& context, const TextureD
   return false;
 }
 
-/// Shows the probe program a table's samples under other inputs than the run's first vertex has.
+/// Probes the values of a table, with other inputs than those of the run's first vertex.
 class TableProbe {
  public:
   TableProbe(ProbeBench& bench, const GlContext& context, const TextureDescription& texture,
@@ -71,13 +71,13 @@ class TableProbe {
     }
   }
 
-  /// All entries of the table, with the inputs given.
+  /// All entries of the table, with `inputs`.
   ProbedImage table(const InputValues& inputs) {
     show(probe_edge, ramp_);
     return bench_.draw(without_coordinate(fragment_, inputs), true);
   }
-  /// Takes the colours of bytes from bytes: what a driver makes of them may differ from multiples of 1/255 in
-  /// the last bit, and a program that compares a sample with such a number sees that.
+  /// Replaces the entries at multiples of 1/255 by those of 8-bit texels: what a driver makes of a byte may
+  /// differ from n/255 in the last bit, which matters to a program that compares samples with such a number.
   void take_bytes(ProbedImage& table, const InputValues& inputs) {
     constexpr int bytes = 256;
     constexpr std::size_t entries_a_byte = (probed_entries - 1) / (bytes - 1);
@@ -92,7 +92,7 @@ class TableProbe {
     show(1, {ramp_[entry]});
     return bench_.draw(without_coordinate(fragment_, inputs), true);
   }
-  /// One entry, while one number runs from `low` in the first pixel to `high` in the last.
+  /// One entry, while the scalar `number` runs from `low` in the first pixel to `high` in the last.
   ProbedImage along(std::size_t entry, const InputNumber& number, float low, float high) {
     show(1, {ramp_[entry]});
     return bench_.draw_along(fragment_, number, low, high, true);
@@ -115,8 +115,8 @@ class TableProbe {
   std::vector<float> ramp_;
 };
 
-/// The fog in the one number that colours depend on; null when there is no such thing. Leaves in `table` the
-/// colours where the fog is thinnest.
+/// Returns the fog by `number`, the only scalar that colours depend on; null if it is no fog. Sets `table` to
+/// the colours where the fog is thinnest.
 std::optional<MeasuredFog> probe_fog(TableProbe& probe, const InputNumber& number, const InputRange& needed,
                                      const InputRange& range, bool premultiplied, ProbedImage& table) {
   const float low = range.low[number.input][number.component];
@@ -131,7 +131,7 @@ std::optional<MeasuredFog> probe_fog(TableProbe& probe, const InputNumber& numbe
   fog->input = number.input;
   fog->component = number.component;
   table = probe.table(probe.first_but(number, fog->reference));
-  // It was found with a few samples, and must hold for all.
+  // The fog was measured with a few samples, and must hold for all.
   for (const std::size_t k : {std::size_t(0), fog->entries.size() / 2, fog->entries.size() - 1}) {
     const volume::Rgba& entry = fog->entries[k];
     const float value = fog->low + (fog->high - fog->low) * float(k) / float(fog->entries.size() - 1);
@@ -149,7 +149,7 @@ std::optional<MeasuredFog> probe_fog(TableProbe& probe, const InputNumber& numbe
   return fog;
 }
 
-/// On which of the varying numbers the table depends, as they run over `range`.
+/// Returns the varying scalars that the table depends on as they run over `range`.
 std::vector<InputNumber> telling_numbers(TableProbe& probe, const ProbedImage& table,
                                          const FragmentInputs& fragment, const InputRange& range) {
   std::vector<InputNumber> telling;
@@ -164,8 +164,8 @@ std::vector<InputNumber> telling_numbers(TableProbe& probe, const ProbedImage& t
   return telling;
 }
 
-/// What varies over the run: nothing that colours depend on, or fog, which leaves `table` where it is thinnest.
-/// Null where colours depend on more.
+/// Explains the inputs that vary over the run: colours do not depend on them, or only by fog; `table` then
+/// becomes the colours where it is thinnest. Null if colours depend on more.
 std::optional<Probed> explained_inputs(TableProbe& probe, const FragmentInputs& fragment, bool premultiplied,
                                        ProbedImage& table) {
   for (const InputRange& tried : {widened(fragment.range, varying_numbers(fragment)), fragment.range}) {
@@ -183,14 +183,14 @@ std::optional<Probed> explained_inputs(TableProbe& probe, const FragmentInputs& 
   return std::nullopt;
 }
 
-/// With the fog's number, where there is fog, as it is where the table was taken.
+/// Returns `inputs` with the scalar of the fog, if there is fog, at the value where the table was drawn.
 InputValues at_reference(InputValues inputs, const std::optional<MeasuredFog>& fog) {
   if (fog) inputs[fog->input][fog->component] = fog->reference;
   return inputs;
 }
 
-/// Whether samples have the colours of `table` with these inputs and at other coordinates: a single texel,
-/// spread over the whole image.
+/// Returns whether samples have the colours of `table` with these inputs and at other coordinates, probed with
+/// a single texel that covers the whole image.
 bool same_everywhere(TableProbe& probe, const ProbedImage& table, const InputValues& inputs) {
   for (const int entry :
        {0, probed_entries / 5, probed_entries / 2, 4 * probed_entries / 5, probed_entries - 1}) {
@@ -201,7 +201,7 @@ bool same_everywhere(TableProbe& probe, const ProbedImage& table, const InputVal
   return true;
 }
 
-/// The table as the nodes have it: premultiplied. Null where it cannot be composed.
+/// The table as the nodes use it: premultiplied. Null if its colours cannot be composed.
 std::optional<volume::TransferFunction> composable(const ProbedImage& table, const Pipeline& pipeline,
                                                    const std::array<float, 2>& range) {
   volume::TransferFunction function;
@@ -225,7 +225,7 @@ ProbeFinding probe_table(ProbeBench& bench, const GlContext& context, const Pipe
   ProbedImage table = probe.table(fragment.first);
   if (!finite(table)) return "the fragment stage gives colours that are not finite";
 
-  // A fragment that is discarded is transparent to every operator but the minimum, for which zero is a value.
+  // A discarded fragment is transparent to every operator but the minimum, for which zero is a value.
   if (pipeline.blending.op == volume::Operator::min || pipeline.blending.alpha.op == volume::Operator::min) {
     if (bench.draw(without_coordinate(fragment, fragment.first), true, {1, 1, 1, 1}) != table)
       return "fragments are discarded under a minimum";
@@ -235,7 +235,7 @@ ProbeFinding probe_table(ProbeBench& bench, const GlContext& context, const Pipe
     return more_than_the_sample;
 
   const InputValues tabled = at_reference(fragment.first, probed->fog);
-  // The fixed function of a stack's slices looks at one place only.
+  // The fixed function of a stack's slices samples one position only.
   const bool one_place = pipeline.stack && pipeline.program == 0;
   if (!one_place && sees_neighbours(bench, context, texture, range, without_coordinate(fragment, tabled), table,
                                     pipeline.stack))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volumes of one value: the colour of every value, a transfer function, and the fog over it.
+// Volumes of scalars: measures the colour of every value, a transfer function, and the fog over it.
 #pragma once
 
 #include "spu/volume/classification/probe_bench.h"

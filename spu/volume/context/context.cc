@@ -8,7 +8,7 @@
 namespace understudy::spu {
 namespace {
 
-/// From OpenGL 3.0 on.
+/// Requires OpenGL 3.0.
 std::vector<std::string> extensions_of(const DispatchTable& gl) {
   std::vector<std::string> extensions;
   GLint count = 0;

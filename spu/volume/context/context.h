@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the volume unit must know about the context it stands in.
+// What the volume unit must know about its context.
 #pragma once
 
 #include <string>
@@ -11,25 +11,25 @@
 namespace understudy::spu {
 
 struct GlContext {
-  const DispatchTable* gl = nullptr;  ///< the table below the volume unit
+  const DispatchTable* gl = nullptr;  ///< dispatch table below the volume unit
   int version = 0;                    ///< 100 * major + 10 * minor, e.g. 450
   bool core = false;                  ///< no fixed function, no GL_FEEDBACK
-  bool pipeline_statistics = false;   ///< there are queries of GL_ARB_pipeline_statistics_query
+  bool pipeline_statistics = false;   ///< has the queries of GL_ARB_pipeline_statistics_query
   bool fragment_assembly = false;     ///< GL_ARB_fragment_program
   bool vertex_assembly = false;       ///< GL_ARB_vertex_program
   bool fog_distance = false;          ///< GL_NV_fog_distance
   std::vector<std::string>
-      extensions{};              ///< the driver's, GL_ARB_gpu_shader5 and so on; of OpenGL 3.0 and later
+      extensions{};              ///< of the driver, such as GL_ARB_gpu_shader5; empty before OpenGL 3.0
   int fixed_function_units = 0;  ///< texture units of the fixed-function pipeline; 0 in core profiles
 
-  /// Float framebuffers, GLSL 1.30 and vertex array objects are what probing and presenting need.
+  /// Probing and presenting need float framebuffers, GLSL 1.30 and vertex array objects.
   bool sufficient() const { return version >= 300; }
 };
 
-/// Whether the driver of an OpenGL 3.0 or later names it.
+/// Returns whether the driver has the extension; false before OpenGL 3.0.
 bool has_extension(const GlContext& context, std::string_view name);
 
-/// Asks the current context.
+/// Queries the current context.
 GlContext describe_context(const DispatchTable& gl);
 
 }  // namespace understudy::spu

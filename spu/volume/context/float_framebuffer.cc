@@ -9,7 +9,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Row by row; 1 where `depth` does not reach.
+/// Row by row; 1 where there is no `depth`.
 std::vector<float> depth_in(const volume::Rect& rect, const std::optional<volume::DepthImage>& depth) {
   std::vector<float> depths(rect.pixels(), 1.0F);
   if (!depth) return depths;

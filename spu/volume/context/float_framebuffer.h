@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A framebuffer of the application's extent that keeps what is drawn as floats: an 8-bit one rounds each slice,
-// and loses fog. With as many samples a pixel as the application's, so that the edges of slices cover as much.
+// A float framebuffer of the application's size: an 8-bit one rounds each slice, and loses fog. It has as many
+// samples per pixel as the application's, so that the edges of slices cover as much.
 #pragma once
 
 #include <array>
@@ -16,21 +16,21 @@ struct GlContext;
 
 class FloatFramebuffer {
  public:
-  /// All four components of every pixel are `background`; depth is 1 where `depth` does not reach. `samples` 0:
-  /// one a pixel.
+  /// Clears all four components of every pixel to `background`, and depth to 1 where there is no `depth`.
+  /// `samples` 0: one per pixel.
   FloatFramebuffer(const GlContext& context, int width, int height, int samples,
                    const std::optional<volume::DepthImage>& depth, float background);
   ~FloatFramebuffer();
   FloatFramebuffer(const FloatFramebuffer&) = delete;
   FloatFramebuffer& operator=(const FloatFramebuffer&) = delete;
 
-  /// False where the driver cannot draw into floats.
+  /// False if the driver cannot draw into floats.
   bool complete() const { return complete_; }
-  /// To draw into.
+  /// The framebuffer to draw into.
   GLuint name() const { return framebuffers_[multisampled_ ? 1 : 0]; }
-  /// What the constructor does, for the pixels of `rect` alone. Leaves scissor test and bindings as they are.
+  /// Clears the pixels of `rect` like the constructor. Leaves scissor test and bindings unchanged.
   void clear(const volume::Rect& rect, const std::optional<volume::DepthImage>& depth, float background);
-  /// RGBA of every pixel of `rect`, the mean of its samples.
+  /// Returns RGBA of every pixel of `rect`, the mean of its samples.
   std::vector<float> pixels(const volume::Rect& rect) const;
 
  private:
@@ -42,9 +42,9 @@ class FloatFramebuffer {
   int height_;
   bool multisampled_;
   bool complete_ = false;
-  std::array<GLuint, 2> textures_{};      ///< colour and depth, one sample a pixel
+  std::array<GLuint, 2> textures_{};      ///< colour and depth, one sample per pixel
   std::array<GLuint, 2> buffers_{};       ///< colour and depth, multisampled
-  std::array<GLuint, 2> framebuffers_{};  ///< of the textures, of the buffers
+  std::array<GLuint, 2> framebuffers_{};  ///< with textures_, with buffers_
 };
 
 }  // namespace understudy::spu

@@ -43,7 +43,7 @@ SavedState::SavedState(const GlContext& context)
 
   GLint clip_planes = 0;
   gl_.GetIntegerv(GL_MAX_CLIP_DISTANCES, &clip_planes);
-  // Nothing may fail once the first of them is off: nobody would switch it on again.
+  // No exception may be thrown after the first is disabled: the destructor would not run and enable it again.
   capabilities_.reserve(switched_off.size() + std::size_t(std::max(clip_planes, 0)) + 1);
   const auto switch_off = [this](GLenum name) {
     const GLboolean enabled = gl_.IsEnabled(name);

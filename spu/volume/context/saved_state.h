@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our own drawing inside the application's context, without a trace.
+// Lets us draw in the application's context without leaving a trace.
 //
-// Probing, observing and presenting each need a known pipeline for a moment. A SavedState reads everything that
-// they may touch, sets what all of them want (no blending, no tests, own vertex array, tight pixel transfer),
-// and puts every item back when it goes. Nothing here raises a GL error, and the error flag is never read: it
-// is the application's.
+// Probing, capturing and presenting need a known pipeline for a short time. A SavedState reads all state that
+// they may change, sets what all of them need (no blending, no tests, own vertex array, tight pixel transfer),
+// and restores all of it in its destructor. Nothing here raises a GL error, and the error flag is never read:
+// it is the application's.
 #pragma once
 
 #include <array>
@@ -23,13 +23,13 @@ class SavedState {
   SavedState(const SavedState&) = delete;
   SavedState& operator=(const SavedState&) = delete;
 
-  /// Remembers the texture and sampler object bound to a unit's target, so that the caller may bind its own.
-  /// The active unit stays the caller's choice until the SavedState goes.
+  /// Saves the texture and the sampler object bound to a unit's target, so that the caller may bind its own.
+  /// Changes the active unit, which the destructor restores.
   void borrow_texture(GLenum target, int unit);
-  /// Binds both again now; nothing where they were not borrowed.
+  /// Binds both again now; does nothing if they were not saved.
   void give_back_texture(GLenum target, int unit);
 
-  /// Of the capabilities that are switched off meanwhile.
+  /// Returns whether a capability that is disabled meanwhile was enabled.
   bool was_enabled(GLenum capability) const;
 
   GLuint draw_framebuffer() const { return GLuint(draw_framebuffer_); }

@@ -20,10 +20,10 @@ namespace {
 constexpr std::string_view depth_readers[] = {
     "glReadPixels", "glReadnPixels", "glCopyPixels", "glCopyTex", "glCopyImageSubData", "glBlit",
     "glDrawPixels", "glBitmap",
-    // Framebuffers that change may give their depth away.
+    // After a change of attachments, the depth may be readable elsewhere.
     "glFramebuffer", "glNamedFramebuffer", "glGetTexImage", "glGetnTexImage", "glGetTextureImage",
     "glGetTextureSubImage",
-    // Draws that no volume is made of, and what samples textures without one.
+    // Draws that no volume consists of, and commands that sample textures without a draw.
     "glDrawTransformFeedback", "glDrawMeshTasks", "glDrawCommands", "glCallCommandList", "glDispatchCompute"};
 
 GLuint bound(const DispatchTable& gl, GLenum binding) {
@@ -39,7 +39,7 @@ void note_draw(DrawObserver& observer) {
       observer.deferred_depth.take(framebuffer, depth_attachment(gl, framebuffer).renderbuffer()));
 }
 
-/// A draw with a depth test, or a read: the answer would depend on the deferred depth.
+/// A draw with a depth test, or a read: its result would depend on the deferred depth.
 struct NoteDepthUse {
   static constexpr bool chooses(std::string_view name) {
     if (name == "glEnd") return false;
@@ -47,7 +47,7 @@ struct NoteDepthUse {
   }
   static const DispatchTable& before(CallId call) {
     DrawObserver& observer = DrawObserver::current();
-    // Within glBegin and glEnd nothing may be asked, and glBegin has been looked at.
+    // Queries are not allowed between glBegin and glEnd, and glBegin itself has been checked.
     if (observer.inside_begin) return observer.chain().face(observer, Phase::watching);
     if (kind_of(call) == CallKind::draw)
       note_draw(observer);
@@ -57,12 +57,12 @@ struct NoteDepthUse {
   }
 };
 
-/// What comes next is the phase's that watches for draws.
+/// The table of the watching phase, which handles the call next.
 const DispatchTable& watching(DrawObserver& observer) {
   return observer.chain().face(observer, Phase::watching);
 }
 
-/// A list that does more than draw may enable the depth test, or bind another framebuffer, before it does.
+/// A list that does more than draw may enable the depth test, or bind another framebuffer, before it draws.
 void APIENTRY call_list_after_volume(GLuint list) {
   DrawObserver& observer = DrawObserver::current();
   if (!observer.inside_begin) {
@@ -75,7 +75,7 @@ void APIENTRY call_list_after_volume(GLuint list) {
   watching(observer).CallList(list);
 }
 
-/// Clears as the scissor and the depth mask let it.
+/// Clears depth within the scissor, if the depth mask allows it.
 void APIENTRY clear(GLbitfield mask) {
   DrawObserver& observer = DrawObserver::current();
   const DispatchTable& gl = *observer.context().gl;
@@ -94,7 +94,7 @@ void APIENTRY clear(GLbitfield mask) {
   observer.next().Clear(mask);
 }
 
-/// What is drawn into another framebuffer may sample a texture.
+/// What is drawn into another framebuffer may sample a depth texture.
 void note_framebuffer(DrawObserver& observer, GLenum target, GLuint framebuffer) {
   if (target != GL_READ_FRAMEBUFFER && !observer.inside_begin)
     observer.depth_looked_at(observer.deferred_depth.take_textures(framebuffer));
@@ -112,7 +112,7 @@ void APIENTRY bind_framebuffer_ext(GLenum target, GLuint framebuffer) {
   watching(observer).BindFramebufferEXT(target, framebuffer);
 }
 
-/// The framebuffer that is bound gets another image; its old one may be looked at in another way.
+/// The bound framebuffer gets another attachment; its old one may be read by other means.
 void note_attachment(DrawObserver& observer, GLenum target, GLuint renderbuffer) {
   if (observer.inside_begin) return;
   const GLuint changed =

@@ -9,8 +9,8 @@
 namespace understudy::spu {
 namespace {
 
-/// The format of the depth of the framebuffer object bound for drawing: only a framebuffer of the same can be
-/// given its samples.
+/// Returns the depth format of the framebuffer object bound for drawing. Its samples can be resolved only into
+/// a framebuffer of the same format.
 GLenum depth_format(const DispatchTable& gl) {
   const auto parameter = [&](GLenum attachment, GLenum name) {
     GLint value = 0;
@@ -34,10 +34,10 @@ GLenum depth_format(const DispatchTable& gl) {
   }
 }
 
-/// A framebuffer of the rectangle's size with one sample's depth a pixel, bound for reading.
+/// A framebuffer of the rectangle's size with the depth of one sample per pixel, bound for reading.
 class ResolvedDepth {
  public:
-  /// Call with the multisampled framebuffer bound for reading; `format` is its depth's.
+  /// The multisampled framebuffer must be bound for reading; `format` is its depth format.
   ResolvedDepth(const DispatchTable& gl, const volume::Rect& rect, GLenum format) : gl_(gl) {
     GLint bound = 0;
     gl_.GetIntegerv(GL_RENDERBUFFER_BINDING, &bound);
@@ -80,7 +80,8 @@ std::optional<volume::DepthImage> read_depth(const GlContext& context, const Tar
   {
     const SavedState saved(context);
     gl.BindFramebuffer(GL_READ_FRAMEBUFFER, saved.draw_framebuffer());
-    // Of a multisampled window pixels can be read; of a framebuffer object only what is resolved first.
+    // Pixels can be read from a multisampled window, but a multisampled framebuffer object must be resolved
+    // first.
     const bool resolve = target.samples > 0 && saved.draw_framebuffer() != 0;
     const GLenum format = resolve ? depth_format(gl) : GLenum(GL_NONE);
     if (resolve && format == GL_NONE) return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The opaque geometry that stands before, inside or behind the volume: its depth, for the render nodes.
+// The depth of opaque geometry before, inside or behind the volume, for the render nodes.
 #pragma once
 
 #include <optional>
@@ -11,13 +11,13 @@ namespace understudy::spu {
 
 struct GlContext;
 
-/// Window depth of `rect` of the framebuffer bound for drawing, `target`. Nothing where it has none. Of a
-/// multisampled framebuffer one sample's depth stands for the pixel: along the edges of opaque geometry the
-/// others may differ.
+/// Reads the window depth of `rect` from the framebuffer bound for drawing, `target`. Null if `rect` is empty,
+/// or if a multisampled framebuffer object has no depth. Of a multisampled pixel, the depth of one sample is
+/// read: at the edges of opaque geometry the others may differ.
 std::optional<volume::DepthImage> read_depth(const GlContext& context, const Target& target,
                                              const volume::Rect& rect, bool or_equal);
 
-/// All of it is at the far end.
+/// Returns whether all depths are at the far end.
 bool hides_nothing(const volume::DepthImage& image);
 
 }  // namespace understudy::spu

@@ -15,7 +15,7 @@ namespace understudy::spu {
 
 namespace {
 
-/// Of the framebuffer that is drawn into.
+/// Describes the depth of the framebuffer bound for drawing.
 DeferredDepth::Watched depth_of_framebuffer(const DispatchTable& gl, GLuint volume,
                                             const volume::Rect& pixels) {
   const auto framebuffer = GLuint(state_value(gl, GL_DRAW_FRAMEBUFFER_BINDING));
@@ -32,10 +32,10 @@ std::optional<DeferredDepth::Watched> DepthWatch::settle(const Run& run, const v
                                : looked_at ? "somebody looked at it"
                                : session_.disabled_optimizations(Optimization::unseen_depth) ? "asked to"
                                                                                              : "";
-  // First what is seen: what is counted may fail.
+  // The visible part comes first: counting may fail.
   if (!why.empty()) {
-    // To its end, as the application's own drawing is timed: a driver that draws later would hide what this
-    // takes.
+    // Waits for completion, as when the application's own drawing is timed: a driver that draws later would
+    // hide the time that this takes.
     const TimedShare timed(account_.clock(), &FrameShares::presentation);
     write_depth(*context_.gl, run);
     context_.gl->Finish();

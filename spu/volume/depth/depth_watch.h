@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether somebody looks at the depth that substituted slices would have written (deferred_depth_write.h).
+// Decides when the depth that substituted slices would have written is drawn (deferred_depth_write.h).
 #pragma once
 
 #include <optional>
@@ -18,9 +18,9 @@ class DepthWatch {
   DepthWatch(const GlContext& context, RenderSession& session, FrameAccount& account)
       : context_(context), session_(session), account_(account) {}
 
-  /// `run` was substituted, the first of its volume or not: draws the depth that it writes where somebody may
-  /// look at it, as `looked_at` says of earlier frames. It would be written in `pixels`. Set where its use is
-  /// to be watched from now on.
+  /// Called when `run` was substituted. Draws the depth that it writes if it is the `first` of its volume, or
+  /// if the depth of an earlier frame was read (`looked_at`). `pixels` is where the depth would be written.
+  /// Returns the depth to watch from now on, if any.
   std::optional<DeferredDepth::Watched> settle(const Run& run, const volume::Rect& pixels, bool first,
                                                bool looked_at);
 

@@ -32,7 +32,7 @@ InputValues values_at(const float* vertex, const ProgramStages& stages,
   return values;
 }
 
-/// Triangles that join tiles or fill up a buffer paint nothing, and their vertices need not make sense.
+/// Triangles that join tiles or fill a buffer draw nothing, and their vertices may be arbitrary.
 void drop_degenerate_triangles(std::vector<float>& data, std::size_t stride) {
   const auto position = [&](std::size_t vertex) {
     return std::array{data[vertex * stride], data[vertex * stride + 1], data[vertex * stride + 2],
@@ -50,7 +50,7 @@ void drop_degenerate_triangles(std::vector<float>& data, std::size_t stride) {
   data.resize(kept);
 }
 
-/// On the first `axes` axes.
+/// Checks the first `axes` axes.
 bool within_texture(std::span<const ObservedVertex> vertices, std::size_t axes) {
   constexpr double slack = 1e-4;
   return std::all_of(vertices.begin(), vertices.end(), [&](const ObservedVertex& vertex) {
@@ -59,7 +59,7 @@ bool within_texture(std::span<const ObservedVertex> vertices, std::size_t axes) 
   });
 }
 
-/// Bounds of all inputs but the coordinate, which has none.
+/// Bounds of all inputs but the coordinate, whose bounds are zero.
 InputRange range_of(const Capture& capture, const ProgramStages& stages) {
   InputRange range{capture.first, capture.first};
   for (std::size_t i = 0; i < stages.inputs.size(); ++i) {
@@ -69,7 +69,7 @@ InputRange range_of(const Capture& capture, const ProgramStages& stages) {
     for (std::size_t c = 0; c < std::size_t(input.components); ++c) {
       for (std::size_t at = capture.offsets[i] + c; at < capture.data.size(); at += capture.stride) {
         const float value = component_of(input, &capture.data[at]);
-        // A NaN becomes a bound, and nothing covers it.
+        // A NaN replaces the bound, and no range covers it.
         if (!(value >= range.low[i][c])) range.low[i][c] = value;
         if (!(value <= range.high[i][c])) range.high[i][c] = value;
       }
@@ -78,8 +78,8 @@ InputRange range_of(const Capture& capture, const ProgramStages& stages) {
   return range;
 }
 
-/// The vertices of `run` as they leave the vertex stage, three a triangle; empty where nothing was drawn, or
-/// too much.
+/// Returns the vertices of `run` after the vertex stage, three per triangle; empty if nothing was drawn, or too
+/// much.
 std::vector<float> captured_data(const GlContext& context, const Run& run, const ProgramStages& stages,
                                  std::size_t stride) {
   TransformFeedback feedback(context, stages.observer);
@@ -88,7 +88,7 @@ std::vector<float> captured_data(const GlContext& context, const Run& run, const
   return feedback.triangles(run, stride);
 }
 
-/// Positions; texture coordinates are not chosen yet.
+/// Returns the positions; texture coordinates are chosen later.
 ObservedPolygons triangles_of(const Capture& capture) {
   ObservedPolygons polygons;
   const std::size_t vertices = capture.data.size() / capture.stride;
@@ -100,8 +100,8 @@ ObservedPolygons triangles_of(const Capture& capture) {
   return polygons;
 }
 
-/// Gives the triangles of `capture` the texture coordinates that stand at `offset` of each vertex: `axes` of
-/// them, and the number of the slice, of which there are `slices`, for the third of a stack.
+/// Gives the triangles of `capture` their texture coordinates: `axes` floats at `offset` of each vertex. The
+/// third coordinate of a stack is the index of the slice, one of `slices`.
 void take_coordinates(Capture& capture, std::size_t offset, std::size_t axes, std::size_t slices) {
   auto& vertices = capture.polygons.vertices;
   const std::size_t of_slice = vertices.size() / std::max<std::size_t>(slices, 1);
@@ -114,8 +114,9 @@ void take_coordinates(Capture& capture, std::size_t offset, std::size_t axes, st
   }
 }
 
-/// Of several inputs that are affine maps of the position (a place in the world, a second coordinate), the one
-/// that stays within the texture addresses it. With a `coordinate` no other is tried.
+/// Chooses the input that addresses the texture: of several that are affine maps of the position (a position in
+/// the world, a second coordinate), the one that stays within the texture. With a `coordinate` no other is
+/// tried.
 void choose_coordinate(Capture& capture, const ProgramStages& stages, const std::string& coordinate,
                        std::size_t axes, std::size_t slices) {
   std::size_t chosen = 0;
@@ -151,7 +152,8 @@ bool InputRange::covers(const InputRange& inner) const {
 
 Capture capture_vertices(const GlContext& context, const Run& run, const ProgramStages& stages,
                          const std::string& coordinate) {
-  // Transform feedback of triangles raises an error where others are drawn, which the application would find.
+  // Transform feedback of triangles raises an error if other primitives are drawn, and the application would
+  // see it.
   if (!run.only_polygons) throw Refusal{"points or lines are drawn among the slices"};
   Capture capture;
   capture.stride = 4;
@@ -173,7 +175,7 @@ Capture capture_vertices(const GlContext& context, const Run& run, const Program
 
   const bool stack = run.pipeline().stack;
   const std::size_t slices = stack ? run.slices().size() : 1;
-  // Whoever draws slices of a stack draws the same with each; if not, nothing will fit.
+  // Each slice of a stack must be drawn with the same number of vertices; otherwise no camera fits.
   if (capture.polygons.vertices.size() % (3 * slices) != 0) return capture;
   choose_coordinate(capture, stages, coordinate, stack ? 2 : 3, slices);
   if (capture.fit) capture.range = range_of(capture, stages);

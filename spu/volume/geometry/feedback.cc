@@ -17,7 +17,7 @@ struct Window {
   std::array<GLdouble, 2> depth_range{};
 };
 
-/// The application's feedback buffer, as it was before.
+/// Restores the application's feedback buffer in its destructor.
 class FeedbackState {
  public:
   explicit FeedbackState(const DispatchTable& gl) : gl_(gl) {
@@ -36,9 +36,9 @@ class FeedbackState {
   void* buffer_ = nullptr;
 };
 
-/// In scope, OpenGL writes what is drawn into `buffer` instead of the framebuffer. Every vertex has its own
-/// colour, whatever the shade model: of a polygon that is shaded flat and clipped, Mesa leaves the colours of
-/// new vertices unset.
+/// In its scope, OpenGL writes what is drawn into `buffer` instead of the framebuffer. Shading is always
+/// smooth, so that every vertex has its own colour: in a clipped polygon with flat shading, Mesa leaves the
+/// colours of new vertices unset.
 class FeedbackMode {
  public:
   FeedbackMode(const DispatchTable& gl, std::vector<float>& buffer) : gl_(gl), application_(gl) {
@@ -54,7 +54,7 @@ class FeedbackMode {
   FeedbackMode(const FeedbackMode&) = delete;
   FeedbackMode& operator=(const FeedbackMode&) = delete;
 
-  /// Ends it. How many values were written; negative where the buffer is too small.
+  /// Ends feedback. Returns the number of values written; negative if the buffer is too small.
   GLint end() {
     ended_ = true;
     return gl_.RenderMode(GL_RENDER);
@@ -109,7 +109,7 @@ ObservedPolygons parse(std::span<const float> feedback, const Window& window, bo
     }
     polygons.first.push_back(polygons.vertices.size());
   }
-  // Points or lines among the slices: not a run that we know, say so by an empty answer.
+  // Points or lines among the slices are not supported: the result is empty.
   return i == feedback.size() ? polygons : ObservedPolygons{};
 }
 

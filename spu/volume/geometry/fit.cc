@@ -10,8 +10,8 @@ namespace {
 
 using Symmetric3 = std::array<std::array<double, 3>, 3>;
 
-/// Cholesky factor of a symmetric positive definite 3x3 matrix; null when a pivot falls below `floor` times the
-/// largest diagonal entry, which is how a flat cloud of points (a single slice) shows itself.
+/// Returns the Cholesky factor of a symmetric positive definite 3x3 matrix; null if a pivot falls below `floor`
+/// times the largest diagonal entry, as it does for points in a plane (a single slice).
 std::optional<Symmetric3> cholesky(const Symmetric3& m, double floor) {
   const double largest = std::max({m[0][0], m[1][1], m[2][2]});
   Symmetric3 l{};
@@ -44,15 +44,15 @@ volume::Vec3 solve(const Symmetric3& l, const volume::Vec3& right) {
   return y;
 }
 
-/// The middle of all vertices, and how far they reach from it. Centring keeps a volume that stands far from the
-/// origin (offset 1e7) from drowning its own extent.
+/// The mean of all vertices, and their extent around it. Centring keeps the precision of a volume far from the
+/// origin (offset 1e7).
 struct Centre {
   volume::Vec3 texture{};
   std::array<double, 4> clip{};
   volume::Vec3 scale{};  ///< of texture coordinates
 };
 
-/// Null where they are not finite, or do not span texture space.
+/// Null if vertices are not finite, or do not span texture space.
 std::optional<Centre> centre_of(std::span<const ObservedVertex> vertices) {
   Centre centre;
   for (const ObservedVertex& v : vertices) {
@@ -75,7 +75,7 @@ std::optional<Centre> centre_of(std::span<const ObservedVertex> vertices) {
   return centre;
 }
 
-/// Largest deviation of a vertex from the map, relative to the extent of the clip positions.
+/// Returns the largest deviation of a vertex from the map, relative to the extent of the clip positions.
 double residual_of(std::span<const ObservedVertex> vertices, const volume::Matrix4& texture_to_clip,
                    const Centre& centre) {
   double extent = 0;
@@ -109,7 +109,8 @@ std::optional<CameraFit> fit_camera(std::span<const ObservedVertex> vertices) {
       for (int row = 0; row < 4; ++row) right[row][i] += t[i] * (v.clip[row] - centre->clip[row]);
     }
   }
-  // Two slices of N lie 1/N apart at least; squared and scaled that is far above 1e-10, float noise far below.
+  // Two of N slices are at least 1/N apart: squared and scaled, that is far above 1e-10, and float noise is far
+  // below.
   const auto factor = cholesky(normal, 1e-10);
   if (!factor) return std::nullopt;
 

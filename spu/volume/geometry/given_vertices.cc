@@ -10,8 +10,8 @@
 namespace understudy::spu {
 namespace {
 
-// In the order of GL_T4F_C4F_N3F_V4F. They are all that the fixed-function pipeline makes position, colour and
-// the coordinate of texture unit 0 from.
+// In the order of GL_T4F_C4F_N3F_V4F. The fixed-function pipeline computes position, colour and the coordinate
+// of texture unit 0 from these alone.
 constexpr std::array<const char*, 4> captured_attributes = {"coordinate", "colour", "normal", "vertex"};
 constexpr std::size_t floats_per_given_vertex = 15;
 constexpr const char* attribute_shader =
@@ -28,7 +28,7 @@ constexpr const char* attribute_shader =
     "  gl_Position = gl_Vertex;\n"
     "}\n";
 
-/// In scope, the vertex arrays are `data` alone; afterwards they, and the current attributes, are as before.
+/// In its scope, `data` is the only vertex array; the destructor restores arrays and current attributes.
 class ArraysInMemory {
  public:
   ArraysInMemory(const GlContext& context, std::span<const float> data) : gl_(*context.gl) {
@@ -40,7 +40,7 @@ class ArraysInMemory {
     gl_.ActiveTexture(GLenum(active_));
     vertex_array_ = state_value(gl_, GL_VERTEX_ARRAY_BINDING);
     array_buffer_ = state_value(gl_, GL_ARRAY_BUFFER_BINDING);
-    // Only the default object may have arrays in memory.
+    // Only the default vertex array object may have arrays in memory.
     gl_.BindVertexArray(0);
     gl_.PushClientAttrib(GL_CLIENT_VERTEX_ARRAY_BIT);
     gl_.BindBuffer(GL_ARRAY_BUFFER, 0);
@@ -78,7 +78,7 @@ class ArraysInMemory {
 bool GivenVertices::can_tell(const Run& run) const {
   const DispatchTable& gl = *context_.gl;
   if (!run.only_polygons) return false;
-  // It may read attributes of any kind.
+  // A vertex program may read any attribute.
   if (context_.vertex_assembly && gl.IsEnabled(GL_VERTEX_PROGRAM_ARB)) return false;
   return state_value(gl, GL_CLIENT_ATTRIB_STACK_DEPTH) < state_value(gl, GL_MAX_CLIENT_ATTRIB_STACK_DEPTH);
 }

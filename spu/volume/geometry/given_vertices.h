@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vertices of a run as the application gave them to the fixed-function pipeline, whether one by one, in
-// arrays, buffers or display lists, and drawn again from memory.
+// The vertices of a run as the application passed them to the fixed-function pipeline (one by one, in arrays,
+// buffers or display lists), read and drawn again from memory.
 //
-// In feedback mode Mesa keeps every buffer that it draws from for ever: the one of glBegin and glEnd (0.5 MiB a
-// context), the application's own, and those of its display lists. What it draws from memory it does not keep.
-// So transform feedback, which keeps nothing, tells the vertices first.
+// In feedback mode Mesa never frees a buffer that it draws from: that of glBegin and glEnd (0.5 MiB per
+// context), the application's own, and those of its display lists. It keeps nothing when it draws from memory.
+// Transform feedback, which keeps nothing either, therefore reads the vertices first.
 #pragma once
 
 #include <vector>
@@ -18,11 +18,11 @@ class GivenVertices {
  public:
   explicit GivenVertices(const GlContext& context) : context_(context) {}
 
-  /// The vertices of `run`, three a triangle. Empty where the run's own calls are needed to draw the same.
+  /// Returns the vertices of `run`, three per triangle. Empty if only the run's own calls can draw the same.
   /// The current attributes become those that the run leaves.
   std::vector<float> read(const Run& run);
-  /// Draws what `read` gave for `run`, with the state as it is. A glPassThrough with its number stands before
-  /// each slice of a stack.
+  /// Draws what `read` returned for `run`, with the current state. Calls glPassThrough with the index of the
+  /// slice before each slice of a stack.
   void draw(const Run& run, const std::vector<float>& vertices) const;
 
  private:
@@ -31,7 +31,7 @@ class GivenVertices {
 
   const GlContext& context_;
   GLuint program_ = 0;
-  bool has_failed_ = false;  ///< to be made
+  bool has_failed_ = false;  ///< the program cannot be linked
 };
 
 }  // namespace understudy::spu

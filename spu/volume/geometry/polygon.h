@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the application's pipeline did with a run of slices, as observed: polygons whose vertices carry both the
-// texture coordinate that addresses the volume and the clip position.
+// Output of the application's pipeline for a run of slices: polygons whose vertices have both the texture
+// coordinate that addresses the volume and the clip position.
 #pragma once
 
 #include <array>
@@ -22,9 +22,9 @@ struct ObservedVertex {
 struct ObservedPolygons {
   std::vector<ObservedVertex> vertices;
   std::vector<std::size_t> first{0};
-  /// True when the observation passed the clipper: what lies outside the view volume is missing.
+  /// True if the polygons were clipped: what lies outside the view volume is missing.
   bool clipped = false;
-  /// The colour that reaches texturing (glColor, or lighting with a constant normal); nothing where it varies.
+  /// The colour that reaches texturing (glColor, or lighting with a constant normal); null if it varies.
   std::optional<std::array<float, 4>> constant_colour{{1, 1, 1, 1}};
 
   std::size_t count() const { return first.size() - 1; }

@@ -11,12 +11,12 @@ namespace {
 
 using volume::Vec3;
 
-/// Coordinates are floats of [0,1], and what a vertex shader adds up of them.
+/// Precision of coordinates: floats in [0,1], and what a vertex shader adds to them.
 constexpr double same_coordinate = 4e-6;
-/// A second sample further away than this belongs to something else.
+/// A second sample further away than this is not the end of a segment.
 constexpr double longest = 0.25;
 
-/// A way from the first coordinate to the second, and where it begins.
+/// The first coordinate, and the offset from it to the second.
 struct Way {
   Vec3 from;
   Vec3 to;
@@ -42,7 +42,8 @@ bool all_near(const std::vector<Way>& ways, const auto& expected) {
   });
 }
 
-/// The segment of one vector, or of so many planes along the ray from `eye` (homogeneous).
+/// Returns the segment if all offsets are one vector, or one number of planes along the ray from `eye`
+/// (homogeneous).
 std::optional<volume::SliceSegment> slice_segment_of(const std::vector<Way>& ways,
                                                      const volume::SlicePlanes& planes,
                                                      const volume::Vec4& eye) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments, observed: an input of the fragment stage, beside the one that addresses the volume, that may
-// address it a second time, always the same way off.
+// Finds slice segments: an input of the fragment stage, other than the one that addresses the volume, that may
+// address it a second time, at a fixed offset.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ struct ObservedSegment {
   volume::SliceSegment slice_segment;
 };
 
-/// Inputs of `capture` that at all its vertices lie off the coordinate by one vector, or by one number of
-/// planes along the ray; whether colours depend on them is not known yet.
+/// Returns the inputs of `capture` that differ from the coordinate at all vertices by one vector, or by one
+/// number of planes along the ray. Whether colours depend on them is not known yet.
 std::vector<ObservedSegment> find_slice_segments(const Capture& capture,
                                                  std::span<const ObservedVertex> vertices,
                                                  const std::vector<StageInput>& inputs, const SliceSet& slices,

@@ -19,16 +19,16 @@ using volume::length;
 using volume::subtract;
 using volume::Vec3;
 
-/// Offsets of one slice's vertices, and of neighbouring slices in the application's own arithmetic, agree to
-/// float precision of texture coordinates; the spacing of real viewers is above 1e-4.
+/// Offsets of the vertices of one slice, and of neighbouring slices in the application's own arithmetic, agree
+/// to the float precision of texture coordinates; the spacing in real viewers is above 1e-4.
 constexpr double same_plane = 2e-6;
-/// Slices are evenly spaced when no offset strays from its place by more than this part of the spacing.
+/// Slices are evenly spaced if no offset deviates by more than this fraction of the spacing.
 constexpr double even_spacing = 0.02;
 /// A coordinate this close to the texture's edge is the edge.
 constexpr double snap = 1e-4;
-/// Slices whose normal has so large a component along an axis lie across it.
+/// Slices lie across an axis if their normal has at least this component along it.
 constexpr double across_axis = 0.999;
-/// Observed and expected area may differ by this part.
+/// Tolerated relative difference between observed and expected area.
 constexpr double same_area = 5e-3;
 
 /// Twice the area vector of a planar polygon.
@@ -77,7 +77,7 @@ std::vector<Vec3> plane_square(const Vec3& normal, double offset) {
   return square;
 }
 
-/// The six half-spaces of the view volume, -w <= x, y, z <= w, carried to texture space.
+/// The six half-spaces of the view volume, -w <= x, y, z <= w, transformed to texture space.
 std::vector<HalfSpace> view_volume(const volume::Matrix4& a) {
   std::vector<HalfSpace> planes;
   for (int row = 0; row < 3; ++row) {
@@ -97,7 +97,7 @@ double depth_at(const volume::Matrix4& a, const Vec3& t) {
   return z / w;
 }
 
-/// One normal for all slices: the sum of all area vectors, turned to agree, outweighs slivers.
+/// The normal of all slices: the sum of all area vectors, equally oriented, so that slivers count little.
 struct CommonNormal {
   Vec3 normal{};
   double total = 0;          ///< length of the sum
@@ -122,13 +122,13 @@ CommonNormal common_normal(const ObservedPolygons& polygons) {
   return common;
 }
 
-/// Where the slices lie along their normal, in drawing order, and the box around them.
+/// Offsets of the slices along their normal, in drawing order, and the box around the slices.
 struct Places {
   std::vector<double> offsets;
   volume::Box box{{1e30, 1e30, 1e30}, {-1e30, -1e30, -1e30}};
 };
 
-/// Null where a slice is not flat.
+/// Null if a slice is not flat.
 std::optional<Places> places_of(const ObservedPolygons& polygons, const Vec3& normal) {
   Places places;
   std::vector<Vec3> points;
@@ -142,7 +142,7 @@ std::optional<Places> places_of(const ObservedPolygons& polygons, const Vec3& no
       low = std::min(low, d);
       high = std::max(high, d);
     }
-    // A degenerate vertex run (batched tiles) paints nothing and says nothing.
+    // Degenerate polygons (batched tiles) draw nothing and are ignored.
     if (length(area_vector(points)) < 1e-12) continue;
     if (high - low > 16 * same_plane) return std::nullopt;
     for (const Vec3& t : points) {
@@ -158,7 +158,7 @@ std::optional<Places> places_of(const ObservedPolygons& polygons, const Vec3& no
   return places;
 }
 
-/// Coordinates close to the texture's edge become the edge; false where the box leaves the texture.
+/// Moves coordinates close to the texture's edge to the edge. Returns false if the box leaves the texture.
 bool snap_to_texture(volume::Box& box) {
   for (int k = 0; k < 3; ++k) {
     if (std::abs(box.low[k]) < snap) box.low[k] = 0;
@@ -168,7 +168,7 @@ bool snap_to_texture(volume::Box& box) {
   return true;
 }
 
-/// From one to the next; null where slices are not equally spaced.
+/// Returns the distance from one slice to the next; null if slices are not equally spaced.
 std::optional<double> step_between(const std::vector<double>& offsets) {
   const std::size_t n = offsets.size();
   const double step = (offsets.back() - offsets.front()) / double(n - 1);
@@ -179,7 +179,7 @@ std::optional<double> step_between(const std::vector<double>& offsets) {
   return step;
 }
 
-/// Whether plane 0 is the nearest to the eye.
+/// Returns whether plane 0 is the nearest to the eye.
 bool starts_at_eye(const volume::SlicePlanes& planes, const volume::Box& box, const volume::Matrix4& camera) {
   const Vec3 middle{(box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2,
                     (box.low[2] + box.high[2]) / 2};
@@ -188,8 +188,8 @@ bool starts_at_eye(const volume::SlicePlanes& planes, const volume::Box& box, co
   return !(depth_at(camera, beyond) < depth_at(camera, middle));
 }
 
-/// What the planes cut out of the box, the clip planes and, where polygons were clipped, the view volume: its
-/// area, doubled.
+/// Returns the area, doubled, of the intersection of the planes with the box, the clip planes and, if polygons
+/// were clipped, the view volume.
 double expected_area(const Vec3& normal, const Places& places, std::span<const HalfSpace> clip_planes,
                      bool clipped_to_view, const volume::Matrix4& camera) {
   std::vector<HalfSpace> cuts(clip_planes.begin(), clip_planes.end());
@@ -247,7 +247,7 @@ SliceFinding find_slices(const ObservedPolygons& polygons, const CameraFit& came
   }
   const double expected = expected_area(normal, *places, clip_planes, polygons.clipped, camera.texture_to_clip);
   if (std::abs(expected - common.observed_area) > same_area * expected) return "slices do not fill a box";
-  // Slices across an axis begin and end on the box's own faces: rounding must not lose the outermost two.
+  // Slices across an axis begin and end on the faces of the box: rounding must not lose the outermost two.
   for (int k = 0; k < 3; ++k) {
     if (std::abs(normal[k]) < across_axis) continue;
     set.region.low[k] -= same_plane / 2;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From observed polygons to the application's sampling: equidistant parallel planes through a box of texture
-// space.
+// Determines the application's sampling from captured polygons: equidistant parallel planes through a box in
+// texture space.
 #pragma once
 
 #include <string>
@@ -18,15 +18,15 @@ struct SliceSet {
   volume::Box region;          ///< the box of texture space that the slices fill
 };
 
-/// The order of drawing under which a blending means what the nodes do.
+/// The order of drawing in which a blending equals the nodes' operator.
 enum class SliceOrder { back_to_front, front_to_back, any };
 
-/// Either the slices, or why they are none, in words that end in the report ("slices are not equally spaced").
+/// The slices, or the reason why there are none, phrased for the report ("slices are not equally spaced").
 using SliceFinding = std::variant<SliceSet, Refusal>;
 
-/// `clip_planes` are the application's own, in texture space. The polygons must be exactly what the planes cut
-/// out of the region and the clip planes (and of the view volume, where `polygons.clipped`): their area is the
-/// check.
+/// `clip_planes` are the application's own, in texture space. The polygons must be exactly the intersection of
+/// the planes with the region and the clip planes (and with the view volume, if `polygons.clipped`): their
+/// areas are compared.
 SliceFinding find_slices(const ObservedPolygons& polygons, const CameraFit& camera,
                          std::span<const volume::HalfSpace> clip_planes,
                          SliceOrder order = SliceOrder::back_to_front);

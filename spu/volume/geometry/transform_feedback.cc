@@ -9,7 +9,7 @@ namespace {
 constexpr GLsizeiptr usual_capture = GLsizeiptr(1) << 20;  // bytes
 constexpr GLsizeiptr largest_capture = GLsizeiptr(1) << 26;
 
-/// In scope, what is drawn is captured; afterwards, however the scope is left, it is not.
+/// Captures what is drawn in its scope, however the scope is left.
 class Capturing {
  public:
   explicit Capturing(const DispatchTable& gl) : gl_(gl) { gl_.BeginTransformFeedback(GL_TRIANGLES); }
@@ -21,7 +21,7 @@ class Capturing {
   const DispatchTable& gl_;
 };
 
-/// In scope, triangles are counted by `queries`, those that are generated and those that are captured.
+/// Counts triangles in its scope with `queries`: those generated, and those captured.
 class Counting {
  public:
   Counting(const DispatchTable& gl, const std::array<GLuint, 2>& queries) : gl_(gl) {
@@ -64,7 +64,7 @@ TransformFeedback::~TransformFeedback() {
 
 void TransformFeedback::replace_binding() {
   if (has_objects_) {
-    // The application's own keeps the number of vertices that glDrawTransformFeedback draws.
+    // The application's own object keeps the number of vertices that glDrawTransformFeedback draws.
     gl_.GetIntegerv(GL_TRANSFORM_FEEDBACK_BINDING, &application_object_);
     gl_.GenTransformFeedbacks(1, &object_);
     gl_.BindTransformFeedback(GL_TRANSFORM_FEEDBACK, object_);
@@ -108,7 +108,7 @@ std::vector<float> TransformFeedback::read_back(std::size_t triangles, std::size
 
 std::vector<float> TransformFeedback::counted_triangles(const Run& run, std::size_t triangles,
                                                         std::size_t stride) {
-  // Where the driver refuses a draw, zeros stay: triangles without an area.
+  // If the driver refuses a draw, zeros remain: triangles without area.
   const std::vector<float> zeros(triangles * 3 * stride);
   gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer_);
   gl_.BufferData(GL_TRANSFORM_FEEDBACK_BUFFER, GLsizeiptr(zeros.size() * sizeof(float)), zeros.data(),

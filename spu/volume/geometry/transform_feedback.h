@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Transform feedback: a run is drawn without rasterisation, and OpenGL writes down what a program's vertex
-// stage makes of its vertices.
+// Transform feedback: draws a run without rasterisation, and captures the output of a program's vertex stage.
 #pragma once
 
 #include <array>
@@ -11,7 +10,7 @@
 
 namespace understudy::spu {
 
-/// In scope, `program` is the current one and nothing is rasterised; afterwards both are as before.
+/// In its scope, `program` is current and nothing is rasterised; the destructor restores both.
 class TransformFeedback {
  public:
   TransformFeedback(const GlContext& context, GLuint program);
@@ -19,28 +18,28 @@ class TransformFeedback {
   TransformFeedback(const TransformFeedback&) = delete;
   TransformFeedback& operator=(const TransformFeedback&) = delete;
 
-  /// The triangles of `run`, three vertices each, `stride` captured floats a vertex. Empty where nothing was
-  /// drawn, or more than 64 MiB. All draws of the run must be of polygons.
+  /// Returns the triangles of `run`, three vertices each, with `stride` captured floats per vertex. Empty if
+  /// nothing was drawn, or more than 64 MiB. All draws of the run must be of polygons.
   std::vector<float> triangles(const Run& run, std::size_t stride);
 
  private:
   void replace_binding();
   void restore_binding();
-  /// Triangles that the run generates, and those that fitted into a buffer of `bytes`.
+  /// Returns the number of triangles that the run generates, and of those that fitted into a buffer of `bytes`.
   std::array<GLuint, 2> draw(const Run& run, GLsizeiptr bytes);
-  /// `triangles`, which the run draws, into a buffer of their size. No query is asked: its answer would wait
-  /// for all that the driver has not yet drawn.
+  /// Captures `triangles`, the number that the run draws, into a buffer of their size. Uses no query: its
+  /// result would wait for all pending work of the driver.
   std::vector<float> counted_triangles(const Run& run, std::size_t triangles, std::size_t stride);
   std::vector<float> read_back(std::size_t triangles, std::size_t stride) const;
 
   const GlContext& context_;
   const DispatchTable& gl_;
-  const bool has_objects_;  ///< transform feedback objects, of OpenGL 4.0
+  const bool has_objects_;  ///< transform feedback objects, from OpenGL 4.0 on
   GLint program_ = 0;
   GLint generic_ = 0;
   GLint application_object_ = 0;
   GLuint object_ = 0;
-  // Where there are no objects:
+  // Without transform feedback objects:
   GLint indexed_ = 0;
   GLint64 start_ = 0;
   GLint64 size_ = 0;

@@ -20,13 +20,13 @@ struct VolumeCounters;
 struct KnownVolume {
   SentVolume sent;
   KnownColours colours;
-  KnownMarch march;  ///< where it is drawn by a ray caster
+  KnownMarch march;  ///< if a ray caster draws it
   VerifiedVolume verified;
   RefusalHistory refusals;
   SpeedGuard speed;
-  std::unique_ptr<Budget> budget;  ///< where an error or a time is asked for
-  bool depth_looked_at = false;    ///< somebody used the depth that its slices write
-  std::uint64_t frames = 0;        ///< in which it was substituted, since it was measured last
+  std::unique_ptr<Budget> budget;  ///< if an error or a time was requested
+  bool depth_looked_at = false;    ///< the depth that its slices write was read
+  std::uint64_t frames = 0;        ///< in which it was substituted since it was last measured
   VolumeCounters* counters = nullptr;
 };
 

@@ -12,10 +12,10 @@
 namespace understudy::spu {
 namespace {
 
-/// Frames until a volume is tried again, by lost comparisons in a row.
+/// Frames until a volume is tried again, by the number of failed comparisons in a row.
 constexpr std::array<std::uint64_t, 4> pauses = {1, 1, 4, 16};
 
-/// Stands for the program and the volume's contents.
+/// Identifies the program and the contents of the volume.
 std::uint64_t state_of(GLuint texture, GLuint program, const ShareGroup& group) {
   constexpr std::uint64_t prime = 0x100000001b3;
   return (group.texture_version(texture) * prime) ^ program;
@@ -108,7 +108,7 @@ void count_substituted(KnownVolume& volume, const volume::FrameCounts& counts, F
 
 void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, const Options& options) {
   if (!options.speed_guard || options.debug_tint) return;
-  // Waiting for what was drawn before is not what the volume costs.
+  // Waiting for earlier drawing is not part of the cost of the volume.
   const double ours_ms =
       spent.recognition + spent.upload + spent.render + spent.verification + spent.presentation + spent.budget;
   const auto now = SpeedGuard::Clock::now();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The volumes of one context, by the texture that they are known by.
+// The volumes of one context, identified by their textures.
 #pragma once
 
 #include <map>
@@ -24,24 +24,25 @@ class KnownVolumes {
   KnownVolumes(const KnownVolumes&) = delete;
   KnownVolumes& operator=(const KnownVolumes&) = delete;
 
-  /// The volume of `texture`, which is a new one where none was known. References stay valid until it is
+  /// Returns the volume of `texture`, a new one if none was known. References stay valid until the volume is
   /// forgotten.
   KnownVolume& of(GLuint texture);
-  /// Null where none is known.
+  /// Null if it is not known.
   KnownVolume* find(GLuint texture);
   bool empty() const { return volumes_.empty(); }
 
-  /// Why the application draws the volume with `program` before anything is known of the draw; null: there is
-  /// no reason.
+  /// Returns why the application itself draws the volume with `program`, as far as known before the draw is
+  /// examined; null if there is no reason.
   std::optional<Refusal> standing_refusal(GLuint texture, GLuint program);
-  /// The application draws the volume of `texture`: counted, and said on stderr where the reason is a new one
+  /// Counts that the application draws the volume of `texture`, and prints the reason on stderr if it is new
   /// and `say` is set.
   void refuse(GLuint texture, const Refusal& refusal, FrameAccount& account, bool say = true);
 
-  /// The same for slices that are drawn one by one, and still are one run: once a frame.
+  /// The same for slices that are drawn one by one and still form one run: once per frame.
   void refuse_in_this_frame(GLuint texture, const Refusal& refusal, FrameAccount& account);
 
-  /// Volumes whose textures are gone, or all of them; the service forgets them, too. Takes the session's lock.
+  /// Forget volumes whose textures were deleted, or all; the service forgets them, too. Take the session's
+  /// lock.
   void forget_deleted();
   void forget_all();
 
@@ -53,14 +54,14 @@ class KnownVolumes {
   std::map<GLuint, KnownVolume> volumes_;
 };
 
-/// The run was substituted.
+/// Counts a substituted run.
 void count_substituted(KnownVolume& volume, const volume::FrameCounts& counts, FrameAccount& account);
 
-/// An attempt to substitute a run took this time: the speed guard is told.
+/// Reports the time of an attempt to substitute a run to the speed guard.
 void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, const Options& options);
 
-/// What follows of a comparison in `frame`. Where it was lost the application draws, and the volume is measured
-/// anew: throws the refusal.
+/// Evaluates a comparison in `frame`. If it failed, the volume is measured anew, and the refusal is thrown that
+/// makes the application draw it.
 void take_comparison(const std::optional<Comparison>& comparison, KnownVolume& volume, std::uint64_t frame);
 
 }  // namespace understudy::spu

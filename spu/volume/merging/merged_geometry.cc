@@ -6,7 +6,7 @@
 namespace understudy::spu {
 namespace {
 
-/// The half-space of a brick's texture space in the volume's.
+/// Transforms a half-space from a brick's texture space to the volume's.
 volume::HalfSpace carried(const volume::HalfSpace& plane, const PlaceMap& map) {
   volume::HalfSpace moved{{}, plane.offset};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -16,7 +16,7 @@ volume::HalfSpace carried(const volume::HalfSpace& plane, const PlaceMap& map) {
   return moved;
 }
 
-/// Polygons of all bricks, in the volume's texture space, in the order in which their planes lie along `axis`.
+/// Polygons of all bricks in the volume's texture space, sorted by the position of their planes along `axis`.
 class AllPolygons {
  public:
   void add(const ObservedPolygons& polygons, const PlaceMap& map, const volume::Vec3& axis) {
@@ -71,7 +71,7 @@ MergedSlices merged_slices(const MergedVolume& merged, std::span<const BrickSlic
     maps.push_back(map_of(merged.tiling, place, merged.descriptions[place].size));
   }
   const SliceOrder order = order_of(pipeline);
-  // The way of the planes through the whole, towards the eye or from it.
+  // The direction in which the planes are drawn through the whole volume, towards the eye or from it.
   const double sign = (order == SliceOrder::front_to_back ? 1 : -1) * first.slices.planes.spacing;
   volume::Vec3 axis{};
   for (std::size_t k = 0; k < 3; ++k) axis[k] = sign * first.slices.planes.normal[k] / maps.front().scale[k];

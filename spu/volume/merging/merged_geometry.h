@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the runs of all bricks to one: their polygons must be what one set of planes cuts out of one box, drawn
-// in the order in which the bricks lie.
+// Merges the slices of all bricks into one set: their polygons must be the intersection of one set of planes
+// with one box, drawn in the order in which the bricks lie.
 #pragma once
 
 #include <span>
@@ -16,14 +16,14 @@ struct BrickSlices {
   const RecognisedRun* seen = nullptr;
 };
 
-/// The slices of the whole, as its texture space has them.
+/// The slices of the whole volume, in its texture space.
 struct MergedSlices {
   CameraFit camera;
   SliceSet slices;
   std::vector<volume::HalfSpace> clip_planes;
 };
 
-/// `bricks` in the order of drawing, by one `pipeline`. Throws Refusal where they are not slices of one volume.
+/// `bricks` in drawing order, all drawn by `pipeline`. Throws Refusal if they are not slices of one volume.
 MergedSlices merged_slices(const MergedVolume& merged, std::span<const BrickSlices> bricks,
                            const Pipeline& pipeline);
 

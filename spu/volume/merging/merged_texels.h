@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The texels of a volume that lies in several 3-D textures.
+// The texels of a volume that is stored in several 3-D textures.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,8 @@
 
 namespace understudy::spu {
 
-/// Reads from all of `textures`, at their places; binds them to the active unit one after the other. Where two
-/// hold different texels for one place, read() throws; what no texture holds is 0.
+/// Reads from all `textures`, at their places; binds them to the active unit one after the other. read() throws
+/// if two textures have different texels at one place; texels that no texture covers are 0.
 std::unique_ptr<TexelSource> merged_source(const GlContext& context, const Tiling& tiling,
                                            std::vector<GLuint> textures,
                                            std::vector<TextureDescription> descriptions);

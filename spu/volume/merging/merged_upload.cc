@@ -17,7 +17,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Where texels of the whole may differ from what was sent of the bricks in `merged.versions`.
+/// Returns boxes of the whole volume in which texels may differ from those sent, which have `merged.versions`.
 std::vector<volume::TexelBox> changed_texels(ShareGroup& group, const MergedVolume& merged,
                                              std::span<const BrickVersion> bricks) {
   std::vector<volume::TexelBox> changed;
@@ -86,7 +86,7 @@ void upload_merged(const GlContext& context, ShareGroup& group, RenderSession& s
       transferred = send_volume(service, wanted, *source, whole.hashes);
     }
   } catch (const std::runtime_error&) {
-    // Texels have come in part only.
+    // Only a part of the texels may have arrived.
     session.forget(wanted.id);
     throw;
   }

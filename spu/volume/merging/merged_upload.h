@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The texels of a merged volume on their way to the render nodes.
+// Sends the texels of a merged volume to the render nodes.
 #pragma once
 
 #include <span>
@@ -9,14 +9,14 @@
 
 namespace understudy::spu {
 
-/// One texture, as it is now.
+/// A texture and its current version.
 struct BrickVersion {
   GLuint texture = 0;
   std::uint64_t version = 0;
 };
 
-/// Makes what the service holds of `merged` what the textures hold now. `sampled` says the unit that bricks are
-/// bound to. Needs the session's lock. Throws as Uploader::upload does.
+/// Updates what the service holds of `merged` to the current contents of the textures. `sampled` gives the unit
+/// that bricks are bound to. Requires the session's lock. Throws as Uploader::upload does.
 void upload_merged(const GlContext& context, ShareGroup& group, RenderSession& session, Uploader& uploader,
                    FrameAccount& account, MergedVolume& merged, std::span<const BrickVersion> bricks,
                    const SampledTexture& sampled, compositor::RenderService& service);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volumes that the application cut into many 3-D textures, and draws brick by brick.
+// Volumes that the application divides into many 3-D textures, and draws brick by brick.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,18 @@ namespace understudy::spu {
 /// A volume of several textures.
 struct MergedVolume {
   std::vector<GLuint> textures;
-  std::vector<TextureDescription> descriptions;  ///< as the tiling was found for
-  std::vector<std::uint64_t> versions;           ///< of the textures, whose texels the service has
-  std::vector<volume::TexelBox> shown;           ///< of each texture's own texels
+  std::vector<TextureDescription> descriptions;  ///< with which the tiling was found
+  std::vector<std::uint64_t> versions;           ///< of the textures whose texels the service has
+  std::vector<volume::TexelBox> shown;           ///< texels of each texture that its slices read
   Tiling tiling;
-  KnownVolume volume;  ///< the whole; `refusals.handed_back`: why it is drawn brick by brick for good
+  KnownVolume volume;  ///< the whole; `refusals.handed_back`: reason why it is always drawn brick by brick
 
   std::optional<std::size_t> place_of(GLuint texture) const;
 };
 
 bool alike(const TextureDescription& a, const TextureDescription& b);
-/// Whether two runs' images go the same way into the framebuffer, in the same colours.
+/// Returns whether the images of two runs have the same colours, and are blended into the framebuffer the same
+/// way.
 bool alike(const Pipeline& a, const volume::RenderRequest& first, const Pipeline& b,
            const volume::RenderRequest& second);
 

@@ -12,7 +12,7 @@ namespace understudy::spu {
 namespace {
 
 constexpr std::uint64_t longest_pause = 1024;
-/// Looking at all pairs of bricks would take longer than drawing them one by one.
+/// Comparing all pairs of more bricks would take longer than drawing them one by one.
 constexpr std::size_t most_bricks = 1024;
 
 }  // namespace
@@ -28,7 +28,7 @@ bool MergedVolumes::belongs(const Group& group, GLuint texture, const DrawnBrick
                             const volume::Classification& classification) {
   const KnownVolume* const first = volumes_.find(group.textures.front());
   if (first == nullptr || !first->colours.probed) return false;
-  // The table spans the values of its own brick.
+  // The transfer function covers the values of its own brick.
   const bool same_colours = has_value_range(type) || first->colours.probed->classification == classification;
   return group.type == type && same_colours && group.textures.size() < most_bricks &&
          std::find(group.textures.begin(), group.textures.end(), texture) == group.textures.end() &&
@@ -108,7 +108,7 @@ void MergedVolumes::learn_anew(GLuint texture, const volume::TexelBox& texels) {
   forget(texture);
   volume::TexelBox& shown = shown_[texture];
   shown = volume::enclosing(shown, texels);
-  // Of this frame's bricks some have been shown already, and are not noted.
+  // Some bricks of this frame have been shown already, and are not recorded.
   next_search_ = session_.ledger().frames() + 1 + pause_;
   pause_ = std::min(2 * pause_, longest_pause);
 }
@@ -137,7 +137,7 @@ void MergedVolumes::forget_deleted() {
     const MergedVolume* const merged = volume_with(texture);
     if (merged == nullptr) continue;
     leave_behind(*merged->volume.counters);
-    // Bricks that are left count for themselves again.
+    // The remaining bricks are counted individually again.
     for (const GLuint other : merged->textures) {
       if (KnownVolume* const brick = volumes_.find(other)) brick->counters = nullptr;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds out which textures are bricks of one volume: in the first frame each is a volume of its own, and where
-// they turn out to be a tiling, they are drawn as one from then on.
+// Finds textures that are bricks of one volume. In the first frame each is a volume of its own; if they form a
+// tiling, they are drawn as one volume from then on.
 #pragma once
 
 #include <cstdint>
@@ -21,22 +21,22 @@ class MergedVolumes {
   MergedVolumes(ShareGroup& group, RenderSession& session, KnownVolumes& volumes)
       : group_(group), session_(session), volumes_(volumes) {}
 
-  /// A run of slices was shown by itself, with this request: it may be a brick.
+  /// Records a run of slices that was shown by itself with `request`: it may be a brick.
   void note_brick(const Pipeline& pipeline, const RecognisedRun& seen, const volume::RenderRequest& request,
                   const TextureDescription& texture);
-  /// Looks for tilings among what was noted since the last call.
+  /// Searches for tilings among the bricks that were recorded since the last call.
   void find();
 
-  /// Of which `texture` is a brick; null: of none.
+  /// Returns the volume that `texture` is a brick of; null if there is none.
   MergedVolume* volume_with(GLuint texture) const;
-  /// `texture` is not what was known of it, its slices read `texels`: its volume is forgotten, and learnt anew.
+  /// `texture` has changed, or its slices read more `texels`: forgets its volume, and learns it anew.
   void learn_anew(GLuint texture, const volume::TexelBox& texels);
 
   void forget_deleted();
   void forget_all();
 
  private:
-  /// Bricks that were shown one by one in this frame and have one lattice and one classification.
+  /// Bricks that were shown one by one in this frame, and have one lattice and one classification.
   struct Group {
     std::vector<GLuint> textures;
     std::vector<DrawnBrick> bricks;
@@ -55,8 +55,8 @@ class MergedVolumes {
   KnownVolumes& volumes_;
   std::vector<std::unique_ptr<MergedVolume>> merged_;
   std::vector<Group> groups_;
-  std::map<GLuint, volume::TexelBox> shown_;  ///< what each texture's slices ever read, in its texels
-  /// Tilings that hold for one view only are found ever more rarely.
+  std::map<GLuint, volume::TexelBox> shown_;  ///< texels that the slices of each texture have ever read
+  /// Tilings that hold for one view only are searched for less and less often.
   std::uint64_t next_search_ = 0;
   std::uint64_t pause_ = 1;
 };

@@ -23,10 +23,10 @@
 namespace understudy::spu {
 namespace {
 
-/// In so many frames the whole must have been shown before the nodes forget the bricks.
+/// The whole must have been shown in this many frames before the nodes forget the bricks.
 constexpr std::uint64_t frames_before_bricks_go = 16;
 
-/// Binds a run's texture where it was bound when it was drawn; sampler objects stay.
+/// Binds a run's texture to the unit where it was bound when it was drawn; sampler objects stay.
 class BoundAgain {
  public:
   BoundAgain(const DispatchTable& gl, const SampledTexture& sampled) : gl_(gl), unit_(sampled.unit) {
@@ -56,7 +56,7 @@ bool RunMerger::still_known(const Pipeline& pipeline, const RecognisedRun& seen,
                             const TextureDescription& texture, const MergedVolume& merged) const {
   const std::size_t place = *merged.place_of(pipeline.volume.texture);
   const volume::TexelBox read = texels_read(seen.slices.region, texture.size, texture.filter);
-  // The table was probed for the values that were known.
+  // The transfer function was probed for the values that were known.
   const bool other_values = has_value_range(texture.type) && seen.texture_version != merged.versions[place];
   return alike(texture, merged.descriptions[place]) && texture.size == merged.descriptions[place].size &&
          volume::contains(merged.shown[place], read) && !other_values;
@@ -94,7 +94,7 @@ bool RunMerger::holds(std::unique_ptr<Run>& run, RecognisedRun& seen, KnownVolum
   MergedVolume* const merged = volume_of(pipeline, seen, volume);
   if (merged == nullptr) return false;
   {
-    // Without nodes the application draws: what waits is not waited with.
+    // Without nodes this throws, and the application draws: runs must not wait.
     const auto lock = stages_.session.lock();
     process_counters().nodes = stages_.session.service().nodes();
   }
@@ -300,12 +300,12 @@ void RunMerger::show_alone(HeldRun& run) {
     const auto lock = stages_.session.lock();
     stages_.session.lost(lost);
   } catch (const Refusal&) {
-    // The texture cannot be read as it was: the last way tells why.
+    // The texture cannot be read as before; the last attempt below reports why.
   } catch (const std::exception&) {
-    // Refused, for want of memory perhaps: below it is told what the last way came to.
+    // Refused, perhaps for lack of memory; the result of the last attempt below is reported.
   }
   if (counts) return count_substituted(volume, *counts, stages_.account);
-  // The run's calls are gone, and whatever could be seen of it is about to be: it is rendered here.
+  // The run's calls cannot be replayed any more: it is rendered in this process.
   try {
     hide();
     counts = show_by_itself(run);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs through the bricks of one volume wait for each other, and are shown as one: one request for a volume
-// assembled from all textures takes their place. Wherever that fails, they are shown one by one.
+// Runs that draw bricks of one volume wait for each other, and are shown as one: they are replaced by one
+// request for a volume assembled from all textures. If that fails, they are shown one by one.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,7 @@
 
 namespace understudy::spu {
 
-/// The stages that its runs go through.
+/// The stages that merged runs pass through.
 struct MergingStages {
   const GlContext& context;
   ShareGroup& group;
@@ -31,7 +31,8 @@ struct MergingStages {
   FrameAccount& account;
 };
 
-/// A run that has been understood, and is not shown yet. Its calls are gone.
+/// A run that was recognised, and is not shown yet. Its calls cannot be replayed: the state around them has
+/// changed.
 struct HeldRun {
   std::unique_ptr<Run> run;
   RecognisedRun seen;
@@ -43,29 +44,30 @@ struct HeldRun {
 
 class RunMerger {
  public:
-  /// `nothing_held` is called when what waited is about to be shown.
+  /// `nothing_held` is called when waiting runs are about to be shown.
   RunMerger(const MergingStages& stages, KnownVolumes& volumes, MergedVolumes& merged,
             std::function<void()> nothing_held)
       : stages_(stages), volumes_(volumes), merged_(merged), nothing_held_(std::move(nothing_held)) {}
 
   bool empty() const { return held_.empty(); }
 
-  /// Whether the run waits for the others of its volume; then `run` is taken, and `seen` with it. Takes the
-  /// session's lock. Throws as the stages do.
+  /// Returns whether the run waits for the other runs of its volume; if so, `run` and `seen` are moved from.
+  /// Takes the session's lock. Throws as the stages do.
   bool holds(std::unique_ptr<Run>& run, RecognisedRun& seen, KnownVolume& volume);
 
-  /// Runs that wait are gone with their context.
+  /// Discards the waiting runs, whose context is gone.
   void forget_held();
-  /// Runs that wait are shown now, whether or not all are there.
+  /// Shows the waiting runs now, whether or not all bricks are there.
   void settle();
 
  private:
-  /// That `pipeline` draws a brick of, and that its run may wait for; null: there is none.
+  /// Returns the volume that `pipeline` draws a brick of, if its run may wait; otherwise null.
   MergedVolume* volume_of(const Pipeline& pipeline, const RecognisedRun& seen, const KnownVolume& volume) const;
-  /// Neither another texture than was known, nor more of it, nor values that no table was probed for.
+  /// Returns whether the run reads the texture that was merged, no more of it, and only values that were
+  /// probed.
   bool still_known(const Pipeline& pipeline, const RecognisedRun& seen, const TextureDescription& texture,
                    const MergedVolume& merged) const;
-  /// Null where colours are none that bricks have in common.
+  /// Null if the colours cannot be common to all bricks.
   std::optional<ImageRequest> request_of(const Pipeline& pipeline, const RecognisedRun& seen,
                                          KnownVolume& volume, const MergedVolume& merged);
   bool goes_with_held(const MergedVolume& merged, const Pipeline& pipeline,
@@ -74,12 +76,12 @@ class RunMerger {
   bool shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held);
   volume::FrameCounts show_whole(MergedVolume& merged, const std::vector<HeldRun>& held, ImageRequest& image,
                                  compositor::RenderService& service);
-  /// One run that waited, by whatever service there is.
+  /// Shows one run that waited, with the session's service or, if that fails, one of its own.
   void show_alone(HeldRun& run);
   volume::FrameCounts show_by_session(HeldRun& run);
   volume::FrameCounts show_by_itself(HeldRun& run);
   volume::FrameCounts show(HeldRun& run, compositor::RenderService& service);
-  /// Needs the session's lock.
+  /// Requires the session's lock.
   void forget_single_bricks(const MergedVolume& merged);
 
   MergingStages stages_;
@@ -87,8 +89,8 @@ class RunMerger {
   MergedVolumes& merged_;
   std::function<void()> nothing_held_;
   std::vector<HeldRun> held_;
-  MergedVolume* held_volume_ = nullptr;   ///< of which the held runs are bricks
-  std::unique_ptr<NativeDrawing> drawn_;  ///< what they draw themselves, in frames that are verified
+  MergedVolume* held_volume_ = nullptr;   ///< volume of which the held runs are bricks
+  std::unique_ptr<NativeDrawing> drawn_;  ///< native rendering of the held runs, in frames that are verified
 };
 
 }  // namespace understudy::spu

@@ -14,16 +14,16 @@ namespace {
 using volume::Matrix4;
 using volume::TexelBox;
 
-/// Texels may lie off their lattice by so much: what is left of float arithmetic is far less, and half a texel
-/// is another lattice.
+/// Tolerated offset of texels from their lattice: rounding leaves far less, and half a texel is another
+/// lattice.
 constexpr double same_texel = 0.05;
-/// Coordinates this close, in texels, are the same.
+/// Coordinates this close, in texels, are equal.
 constexpr double same_brick_place = 0.01;
-/// Of the box around all regions at least so much must be filled; the rest may be gaps as wide as slices are
-/// apart. Whether the slices really fill a box is asked of them later.
+/// This fraction of the box around all regions must be filled; the rest may be gaps as wide as the distance of
+/// slices. Whether the slices really fill a box is checked later.
 constexpr double least_filled = 0.5;
 
-/// The region in texels, of the texture's own.
+/// Returns the region in texels of the texture.
 volume::Box in_texels(const DrawnBrick& brick) {
   volume::Box box = brick.region;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -44,7 +44,7 @@ bool overlap(const volume::Box& a, const volume::Box& b) {
   return true;
 }
 
-/// It tells best where the others are.
+/// The largest brick determines the positions of the others most precisely.
 const DrawnBrick& largest_of(std::span<const DrawnBrick> bricks) {
   return *std::max_element(bricks.begin(), bricks.end(), [](const DrawnBrick& a, const DrawnBrick& b) {
     return std::int64_t(a.size[0]) * a.size[1] * a.size[2] < std::int64_t(b.size[0]) * b.size[1] * b.size[2];
@@ -75,7 +75,7 @@ std::optional<std::array<int, 3>> lattice_offset(const DrawnBrick& base, const D
   std::array<int, 3> offset{};
   double projective = 0;
   for (std::size_t row = 0; row < 3; ++row) {
-    // Where the brick's corners go, in the base's texels.
+    // The brick's edges, in texels of the base.
     const double n = base.size[row];
     for (std::size_t column = 0; column < 3; ++column) {
       const double moved = map[4 * row + column] * n;
@@ -162,10 +162,10 @@ bool drawn_in_order(std::span<const volume::Box> regions, const Matrix4& texture
                     const volume::SlicePlanes& planes, bool back_to_front) {
   const auto clip_to_texture = volume::inverse(texture_to_clip);
   if (!clip_to_texture) return false;
-  // All rays meet here, or, where the last component is 0, are parallel to it.
+  // All rays meet at this point, or are parallel to it if the last component is 0.
   const volume::Vec4 eye = volume::transform(*clip_to_texture, {0, 0, 1, 0});
   const auto direction = [&](std::size_t axis, double plane) { return eye[axis] - plane * eye[3]; };
-  // Rays go along `direction` or against it, whichever way the planes are numbered.
+  // Planes are numbered from the eye: this decides whether rays run along `direction` or against it.
   volume::Vec3 middle{};
   for (const volume::Box& region : regions) {
     for (std::size_t k = 0; k < 3; ++k)
@@ -179,7 +179,7 @@ bool drawn_in_order(std::span<const volume::Box> regions, const Matrix4& texture
   for (std::size_t later = 1; later < regions.size(); ++later) {
     for (std::size_t earlier = 0; earlier < later; ++earlier) {
       const volume::Box &a = regions[earlier], &b = regions[later];
-      // With back to front, may a ray meet the earlier one first, and then the later one?
+      // If drawn back to front: may a ray meet the earlier brick first, and then the later one?
       bool separated = false;
       bool possible = true;
       for (std::size_t k = 0; k < 3 && possible; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether several textures are pieces of one volume: from the cameras they are drawn under follows where each
-// lies among the texels of the others.
+// Determines whether several textures are bricks of one volume: the cameras with which they are drawn determine
+// where each lies among the texels of the others.
 #pragma once
 
 #include <optional>
@@ -19,34 +19,35 @@ namespace understudy::spu {
 struct DrawnBrick {
   std::array<int, 3> size{};  ///< in texels
   volume::Matrix4 texture_to_clip{};
-  volume::Box region;      ///< of its texture space that its slices fill
-  volume::TexelBox shown;  ///< the texels that samples of this or an earlier region read
+  volume::Box region;      ///< of its texture space, filled by its slices
+  volume::TexelBox shown;  ///< texels read by samples in this region or an earlier one
 };
 
-/// Texels of a texture of `size` that samples of `region` read; the filter's neighbours without weight left
-/// out.
+/// Returns the texels of a texture of `size` that samples in `region` read, without the filter's neighbours of
+/// weight zero.
 volume::TexelBox texels_read(const volume::Box& region, const std::array<int, 3>& size, volume::Filter filter);
 
-/// Where texel (0,0,0) of `brick` lies among the texels of `base`, in texels; null where the texels of both are
-/// not of one lattice (turned, of another size, shifted by a part of a texel).
+/// Returns the position of texel (0,0,0) of `brick` among the texels of `base`, in texels; null if both are not
+/// on one lattice (rotated, of another size, shifted by a fraction of a texel).
 std::optional<std::array<int, 3>> lattice_offset(const DrawnBrick& base, const DrawnBrick& brick);
 
 struct Tiling {
   struct Place {
-    std::array<int, 3> origin{};  ///< of the texture's texel (0,0,0) among the volume's; may lie outside
-    volume::TexelBox texels;      ///< of the volume, which the texture holds
+    std::array<int, 3> origin{};  ///< position of the texture's texel (0,0,0) among the volume's; may lie
+                                  ///< outside
+    volume::TexelBox texels;      ///< texels of the volume that the texture holds
   };
   std::array<int, 3> size{};  ///< of the volume, in texels
   std::vector<Place> places;  ///< of the bricks, in their order
 };
 
-/// Either the places of all bricks in one volume, or why they are none. Samples near a brick's face must find
-/// the neighbour's texels in the brick itself: where they do not, the faces are to be seen in the application's
-/// own image, and one volume would not show them. Only the outer faces may be the texture's ends.
+/// Returns the places of all bricks in one volume, or the reason why there are none. Samples near a brick's
+/// face must find the neighbour's texels in the brick itself; otherwise the faces are visible in the
+/// application's own image, and one volume would not show them. Only outer faces may be the ends of a texture.
 std::variant<Tiling, std::string> find_tiling(std::span<const DrawnBrick> bricks, volume::Filter filter,
                                               const std::array<volume::Wrap, 3>& wrap);
 
-/// A texture coordinate of the brick as one of the volume, scale and offset along each axis.
+/// Maps a texture coordinate of the brick to one of the volume: scale and offset along each axis.
 struct PlaceMap {
   volume::Vec3 scale{};
   volume::Vec3 offset{};
@@ -57,8 +58,8 @@ struct PlaceMap {
 };
 PlaceMap map_of(const Tiling& tiling, std::size_t brick, const std::array<int, 3>& size);
 
-/// Whether bricks that fill `regions` of texture space, drawn in this order, are never drawn over by one that
-/// lies behind them: back to front, or, the other way round, front to back.
+/// Returns whether bricks that fill `regions` of texture space are drawn in visibility order, back to front or
+/// front to back: none is drawn over by one that lies behind it, or vice versa.
 bool drawn_in_order(std::span<const volume::Box> regions, const volume::Matrix4& texture_to_clip,
                     const volume::SlicePlanes& planes, bool back_to_front);
 

@@ -9,14 +9,14 @@
 namespace understudy::spu {
 namespace {
 
-/// The table below, with the run closed where it still needs the arrays as they are.
+/// Returns the table below; closes the run first if it still needs the arrays as they are.
 const DispatchTable& before_change() {
   DrawObserver& observer = DrawObserver::current();
   if (observer.run_open() && (observer.run().reads_arrays || observer.run().inside_begin)) observer.close_run();
   return observer.next();
 }
 
-/// Names of states of arrays that stand alone.
+/// State of arrays, and constants, outside of the ranges in is_about_arrays().
 constexpr std::array<GLenum, 17> of_arrays{GL_ARRAY_BUFFER_BINDING,
                                            GL_ELEMENT_ARRAY_BUFFER_BINDING,
                                            GL_DRAW_INDIRECT_BUFFER_BINDING,
@@ -35,9 +35,9 @@ constexpr std::array<GLenum, 17> of_arrays{GL_ARRAY_BUFFER_BINDING,
                                            GL_FOG_COORD_ARRAY,
                                            GL_SECONDARY_COLOR_ARRAY};
 
-/// Whether nothing in a run changes what this state answers.
+/// Returns whether no call in a run changes this state.
 bool is_about_arrays(GLenum name) {
-  // The enumerants of the fixed arrays stand together: enables, sizes, types, strides, pointers; bindings.
+  // The enumerants of fixed arrays are consecutive: enables, sizes, types, strides, pointers; bindings.
   return std::ranges::find(of_arrays, name) != of_arrays.end() ||
          (name >= GL_VERTEX_ARRAY && name <= GL_EDGE_FLAG_ARRAY_POINTER) ||
          (name >= GL_FOG_COORD_ARRAY_TYPE && name <= GL_FOG_COORD_ARRAY) ||
@@ -45,7 +45,7 @@ bool is_about_arrays(GLenum name) {
          (name >= GL_VERTEX_ARRAY_BUFFER_BINDING && name <= GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING);
 }
 
-/// The table below, with the run closed unless the answer is about arrays.
+/// Returns the table below; closes the run first unless the query is about arrays.
 const DispatchTable& before_question(GLenum name) {
   DrawObserver& observer = DrawObserver::current();
   if (observer.run_open() && (!is_about_arrays(name) || observer.run().inside_begin)) observer.close_run();
@@ -62,14 +62,14 @@ GLboolean APIENTRY is_enabled_after_slices(GLenum name) {
   return before_question(name).IsEnabled(name);
 }
 void APIENTRY get_attribute(GLuint index, GLenum name, GLint* value) {
-  // The current value is what the slices change.
+  // Slices change the current value.
   before_question(name == GL_CURRENT_VERTEX_ATTRIB ? name : GL_VERTEX_ARRAY)
       .GetVertexAttribiv(index, name, value);
 }
 void APIENTRY get_attribute_pointer(GLuint index, GLenum name, void** value) {
   before_question(GL_VERTEX_ARRAY).GetVertexAttribPointerv(index, name, value);
 }
-// How far a draw may read; no run gives buffers another size.
+// The buffer size limits what a draw may read; runs do not change it.
 void APIENTRY get_buffer(GLenum target, GLenum name, GLint* value) {
   before_question(GL_ARRAY_BUFFER_BINDING).GetBufferParameteriv(target, name, value);
 }

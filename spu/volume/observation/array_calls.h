@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// While a run of slices is open: calls that point vertex arrays elsewhere, and questions about them.
+// Calls that redirect vertex arrays, and queries about them, while a run of slices is open.
 //
-// Draws from the application's own memory are kept with their vertices (client_arrays.h), so the arrays may
-// change between the slices of one run. Programs that draw each slice from another array do that, and so does
-// every stream of packed calls.
+// Draws from the application's own memory are kept with their vertices (client_arrays.h), so arrays may change
+// between the slices of a run. Programs that draw each slice from another array do so, and every stream of
+// packed calls does.
 #pragma once
 
 #include "dispatch/table.h"

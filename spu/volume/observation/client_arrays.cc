@@ -37,7 +37,7 @@ T load(const std::byte* from) {
   return value;
 }
 
-/// Component value as OpenGL converts it; normalised integers map to [0,1] or [-1,1] (OpenGL 4.6, 2.3.5).
+/// Converts a component as OpenGL does; normalised integers map to [0,1] or [-1,1] (OpenGL 4.6, 2.3.5).
 float component(const std::byte* from, GLenum type, bool normalised) {
   switch (type) {
     case GL_BYTE:
@@ -89,7 +89,7 @@ bool add_fixed(const DispatchTable& gl, ArraySources& sources, int& in_buffers, 
   return size != 0 && array.components >= 1 && array.components <= 4;
 }
 
-/// Whether the attribute is no float, or is not read once a vertex.
+/// Returns whether the attribute is not a float, or is not read once per vertex.
 bool is_uncommon(const GlContext& context, GLuint index) {
   const auto asked = [&](GLenum name) {
     GLint value = 0;
@@ -102,7 +102,7 @@ bool is_uncommon(const GlContext& context, GLuint index) {
          (context.version >= 410 && asked(GL_VERTEX_ATTRIB_ARRAY_LONG));
 }
 
-/// The generic attribute `index`, which is enabled. False where it is not understood.
+/// Adds the enabled generic attribute `index`. Returns false if it is not supported.
 bool add_generic(const GlContext& context, ArraySources& sources, int& in_buffers, GLuint index) {
   const DispatchTable& gl = *context.gl;
   MemoryArray array{.role = MemoryArray::Role::generic, .index = GLint(index)};
@@ -162,7 +162,7 @@ std::optional<std::string> read_array_sources(const GlContext& context, ArraySou
   }
   GLint attributes = 0;
   gl.GetIntegerv(GL_MAX_VERTEX_ATTRIBS, &attributes);
-  // Attribute 0 makes the vertex, so it comes last.
+  // Attribute 0 completes the vertex, so it comes last.
   for (GLint i = attributes - 1; i >= 0; --i) {
     GLint enabled = 0;
     gl.GetVertexAttribiv(GLuint(i), GL_VERTEX_ATTRIB_ARRAY_ENABLED, &enabled);
@@ -188,7 +188,7 @@ bool restarts_primitives(const GlContext& context) {
 void append_elements(Records& calls, const ArraySources& sources, GLenum mode,
                      const std::vector<std::uint32_t>& indices) {
   using Role = MemoryArray::Role;
-  // Generic attributes alone draw too, but only attribute 0 or the position makes an immediate vertex.
+  // Generic attributes alone draw too, but only attribute 0 or the position completes an immediate vertex.
   const bool positioned =
       std::any_of(sources.arrays.begin(), sources.arrays.end(), [](const MemoryArray& array) {
         return array.role == Role::vertex || (array.role == Role::generic && array.index == 0);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws from the application's own memory, captured at the moment of the call.
+// Draws from the application's own memory, captured at the time of the call.
 //
-// The memory may change before the run is drawn (one buffer refilled for every slice is common), so the draw is
-// kept as what OpenGL defines it to be: glBegin, one glArrayElement an index, glEnd, each array's value as an
-// immediate call.
+// The memory may change before the run is drawn (one buffer that is refilled for every slice is common). The
+// draw is therefore kept as OpenGL defines it: glBegin, one glArrayElement per index, glEnd, with each array's
+// value as an immediate call.
 #pragma once
 
 #include <cstdint>
@@ -34,13 +34,14 @@ struct ArraySources {
   std::vector<MemoryArray> arrays;
 };
 
-/// Where the next array draw would read its vertices. A reason where the mixture is not one we capture.
+/// Determines where the next array draw would read its vertices. Returns a reason if the mixture is not
+/// supported.
 std::optional<std::string> read_array_sources(const GlContext& context, ArraySources& sources);
 
-/// Whether one of the indices begins a new primitive instead of naming a vertex.
+/// Returns whether an index may restart a primitive instead of identifying a vertex.
 bool restarts_primitives(const GlContext& context);
 
-/// Appends the elements `indices` of the arrays as one glBegin/glEnd.
+/// Appends the array elements `indices` as one glBegin/glEnd.
 void append_elements(Records& calls, const ArraySources& sources, GLenum mode,
                      const std::vector<std::uint32_t>& indices);
 

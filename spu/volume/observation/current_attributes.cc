@@ -9,10 +9,10 @@
 namespace understudy::spu {
 namespace {
 
-constexpr std::uint32_t every_generic_attribute = 0xffff;  // OpenGL's least number of them
+constexpr std::uint32_t every_generic_attribute = 0xffff;  // the 16 that OpenGL guarantees
 constexpr std::uint32_t the_vertex = 1;
 
-/// What a call of kind `vertex` sets. A vertex of its own sets nothing that stays.
+/// What a call of kind `vertex` sets. A vertex itself sets no current attribute.
 enum class AttributeKind : std::uint8_t {
   vertex,
   fixed_function,

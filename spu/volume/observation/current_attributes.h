@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The current vertex attributes: what vertices get that no array and no call of their own gives anything else
-// (OpenGL 4.6 compatibility, 10.2). Calls between draws set them, and so do draws of single vertices.
+// The current vertex attributes: the values that a vertex takes unless an array or a call of its own supplies
+// others (OpenGL 4.6 compatibility, 10.2). Calls between draws set them, and so do draws of single vertices.
 #pragma once
 
 #include <array>
@@ -20,14 +20,14 @@ struct MemoryArray;
 struct AttributeSet {
   /// Colours, normal, texture coordinates, fog coordinate and edge flag.
   bool fixed_function = false;
-  /// Generic attributes, a bit each, by the type of their values. Attribute 0 is the vertex.
+  /// Generic attributes, one bit each, by the type of their values. Attribute 0 is the vertex.
   std::uint32_t floats = 0;
   std::uint32_t integers = 0;
   std::uint32_t doubles = 0;
 
-  /// Adds what a call of kind `vertex` sets; `words` are its arguments as AsWords makes them.
+  /// Adds what a call of kind `vertex` sets; `words` are its arguments in the form of AsWords.
   void add(CallId call, const std::uint64_t* words);
-  /// Adds what the elements of these arrays set where they are drawn one by one.
+  /// Adds what the elements of these arrays set if they are drawn one by one.
   void add(std::span<const MemoryArray> arrays);
   /// Adds what a display list of vertices may set.
   void add_list();
@@ -35,10 +35,10 @@ struct AttributeSet {
   bool empty() const { return !fixed_function && (floats | integers | doubles) == 0; }
 };
 
-/// Their values at one moment.
+/// The values of attributes at one moment.
 class CurrentAttributes {
  public:
-  /// Those of the current context, of the attributes in `set`.
+  /// Reads the attributes in `set` from the current context.
   CurrentAttributes(const DispatchTable& gl, const AttributeSet& set);
   void make_current(const DispatchTable& gl) const;
 
@@ -48,7 +48,7 @@ class CurrentAttributes {
     Four colour;
     Four secondary_colour;
     Four normal;
-    /// OpenGL's least number of fixed-function units that carry coordinates.
+    /// OpenGL's minimum number of fixed-function units with coordinates.
     std::array<Four, 8> coordinates;
     GLfloat fog_coordinate;
     GLboolean edge_flag;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which framebuffers lack the depth of substituted runs, or would if it had not been drawn in a first frame
-// (depth/deferred_depth_write.h).
+// Records which framebuffers lack the depth of substituted runs, or would lack it had it not been drawn in a
+// first frame (depth/deferred_depth_write.h).
 #pragma once
 
 #include <optional>
@@ -15,27 +15,27 @@ class DeferredDepth {
  public:
   struct Watched {
     GLuint framebuffer = 0;
-    GLuint volume = 0;    ///< the texture of the volume whose run would have written it
-    volume::Rect pixels;  ///< where it would have
-    /// A texture is attached, which may be sampled.
+    GLuint volume = 0;    ///< texture of the volume whose run would have written the depth
+    volume::Rect pixels;  ///< where the run would have written it
+    /// The depth attachment is a texture, which may be sampled.
     bool in_texture = false;
-    GLuint renderbuffer = 0;  ///< attached in place of one; 0: none
+    GLuint renderbuffer = 0;  ///< attached instead of a texture; 0: none
   };
 
   bool empty() const { return watched_.empty(); }
-  /// Gives the volumes whose depth is watched no longer: most_framebuffers are at once, and the oldest counts
-  /// as looked at.
+  /// Returns the volumes whose depth is no longer watched: no more than most_framebuffers are watched, and the
+  /// oldest then counts as read.
   std::vector<GLuint> add(const Watched& watched);
 
-  // Each takes what is concerned out, and gives the volumes that it is of.
+  // Each of these removes the depth concerned, and returns the volumes that it belongs to.
 
   std::vector<GLuint> take_all();
-  /// Looked at in the framebuffer, or through the renderbuffer (0: none) that another framebuffer shares with
-  /// it.
+  /// Depth that is read in the framebuffer, or through the renderbuffer (0: none) that another framebuffer
+  /// shares with it.
   std::vector<GLuint> take(GLuint framebuffer, GLuint renderbuffer);
-  /// The depth of the framebuffer is cleared, in the pixels of `part` if it is set.
+  /// Depth of the framebuffer that is cleared, within the pixels of `part` if it is set.
   std::vector<GLuint> take_cleared(GLuint framebuffer, const std::optional<volume::Rect>& part);
-  /// All that lies in textures, but for that of the framebuffer, if it is set.
+  /// All depth in textures, except that of framebuffer `but_of`, if it is set.
   std::vector<GLuint> take_textures(std::optional<GLuint> but_of);
 
   static constexpr std::size_t most_framebuffers = 4;

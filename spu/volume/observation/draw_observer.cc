@@ -15,7 +15,7 @@ const GlContext& DrawObserver::context() {
 
 bool DrawObserver::opens_run() {
   if (begins_run()) return true;
-  // Whatever else is drawn now goes on top of what waits.
+  // Any other draw goes on top of the waiting runs, so they are shown first.
   settle_held();
   return false;
 }
@@ -71,7 +71,7 @@ void DrawObserver::give_up() {
   try {
     settle_held();
   } catch (...) {
-    // It holds nothing any more.
+    // No run is held any more.
   }
   if (closing_) draw(*closing_);
   if (run_) draw(*run_);

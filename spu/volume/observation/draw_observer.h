@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The first stage: watches for draws that may be a volume, and keeps them as runs.
 //
-//   watching ──(a draw that may be a volume)──► deferring ──(any other call, a frame end)──► close the run
+//   watching --(a draw that may be a volume)--> deferring --(any other call, a frame end)--> close the run
 //
 // The slots of the dispatch table (draw_slots.h and the other *_slots functions) find the observer in the chain
-// and tell it what the application does; what a closed run is, the unit above decides.
+// and report the application's calls to it; the derived unit decides what a closed run is.
 #pragma once
 
 #include <memory>
@@ -27,7 +27,7 @@ class DrawObserver : public Unit {
 
   explicit DrawObserver(Chain& chain) : chain_(chain) {}
 
-  /// That of the chain that is current on this thread, which has one.
+  /// Returns the observer of the chain that is current on this thread, which must have one.
   static DrawObserver& current() { return *Chain::current()->find<DrawObserver>(); }
 
   const char* tag_address() const final { return &tag; }
@@ -37,32 +37,31 @@ class DrawObserver : public Unit {
   }
   void give_up() final;
 
-  /// A draw is about to happen while watching. Opens a run and answers true when it may be a slice.
+  /// Called before a draw while watching. Opens a run and returns true if the draw may be a slice.
   bool opens_run();
   bool run_open() const { return run_ != nullptr; }
   Run& run() { return *run_; }
-  /// The run is over: its image is in the framebuffer, or its calls are made.
+  /// Ends the run: shows its image in the framebuffer, or makes its calls.
   void close_run();
-  /// Runs that wait for others of their volume (in the phase deferring, with no run open) are shown now,
-  /// whether or not all are there.
+  /// Shows runs that wait for others of their volume (in the phase deferring, with no run open), whether or not
+  /// all are there.
   virtual void settle_held() = 0;
 
-  /// The application is between glBegin and glEnd of a draw that is not deferred: nothing may be asked of
-  /// OpenGL.
+  /// The application is between glBegin and glEnd of a draw that is not deferred: OpenGL must not be queried.
   bool inside_begin = false;
-  /// Between glBeginConditionalRender and glEndConditionalRender, where our own drawing may do nothing.
+  /// Between glBeginConditionalRender and glEndConditionalRender, where our own drawing may have no effect.
   bool conditional_render = false;
-  /// Between glBeginTransformFeedback and glEndTransformFeedback. From OpenGL 4.0 on a query tells, which knows
-  /// of feedback that pauses.
+  /// Between glBeginTransformFeedback and glEndTransformFeedback. From OpenGL 4.0 on a query is used instead,
+  /// which takes paused feedback into account.
   bool transform_feedback = false;
   StackWatch stacks;
-  /// Many 2-D textures of one size: what is drawn with them may be a stack of slices.
+  /// Many 2-D textures of one size were defined: draws with them may be a stack of slices.
   void stack_defined();
 
   DeferredDepth deferred_depth;
-  /// Depth that runs of these volumes would have written is being used: it is watched no longer.
+  /// Depth that runs of these volumes would have written is being read: it is no longer watched.
   virtual void depth_looked_at(const std::vector<GLuint>& volumes) = 0;
-  /// Some of it is gone, unused.
+  /// Some deferred depth was cleared before it was read.
   virtual void depth_gone() = 0;
 
   const GlContext& context();
@@ -70,17 +69,19 @@ class DrawObserver : public Unit {
   Chain& chain() { return chain_; }
 
  protected:
-  /// Why the volume of `texture` is not substituted with `program` whatever the run; null: there is no reason.
+  /// Why the volume of `texture` is not substituted with `program`, whatever the run; null if there is no
+  /// reason.
   virtual std::optional<Refusal> standing_refusal(GLuint texture, GLuint program) = 0;
-  /// No run begins for that reason: of slices drawn one by one, too, that is said once a frame.
+  /// No run begins for this reason, which is reported once per frame even if slices are drawn one by one.
   virtual void refuse_in_this_frame(GLuint texture, const Refusal& refusal) = 0;
-  /// The image of `run` is in the framebuffer; else its calls are to be made.
+  /// Returns false if the calls of `run` are to be made; otherwise its image is shown, or `run` is taken and
+  /// waits.
   virtual bool substitutes(std::unique_ptr<Run>& run) = 0;
   /// The phase between runs.
   virtual Phase resting_phase() const = 0;
   ProgramSamplers& samplers() { return samplers_; }
 
-  /// Takes away the open run, unmade.
+  /// Discards the open run without making its calls.
   void drop_run() {
     run_.reset();
     closing_.reset();
@@ -89,17 +90,17 @@ class DrawObserver : public Unit {
 
  private:
   bool begins_run();
-  /// The application's own drawing, unless the run has been shown.
+  /// Makes the application's own draws, unless the run has been shown.
   void draw(Run& run);
-  /// Null where `pipeline` may begin a run.
+  /// Null if `pipeline` may begin a run.
   std::optional<Refusal> refusal_of(const Pipeline& pipeline);
 
   Chain& chain_;
   std::optional<GlContext> context_;
   ProgramSamplers samplers_;
-  Records calls_;  ///< of the open run; kept between runs for its memory
+  Records calls_;  ///< of the open run; reused by later runs for its memory
   std::unique_ptr<Run> run_;
-  std::unique_ptr<Run> closing_;  ///< is being looked at
+  std::unique_ptr<Run> closing_;  ///< is being substituted
 };
 
 }  // namespace understudy::spu

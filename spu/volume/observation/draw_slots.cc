@@ -25,7 +25,7 @@
 namespace understudy::spu {
 namespace {
 
-/// More elements in one draw than this are no slices.
+/// Draws of more elements are not deferred.
 constexpr GLsizei most_elements = 1 << 22;
 
 struct CloseRun {
@@ -33,7 +33,7 @@ struct CloseRun {
     DrawObserver& observer = DrawObserver::current();
     observer.close_run();
     if (!passes_held_runs(call)) observer.settle_held();
-    // The call may be one that is looked at in the phase that is entered now.
+    // The phase that begins now may handle the call, too.
     const Phase phase = observer.chain().phase();
     return phase == Phase::deferring ? observer.next() : observer.chain().face(observer, phase);
   }
@@ -62,7 +62,7 @@ struct IntoRun {
   }
 };
 
-/// Keeps the draw in the open run, or opens one; false: the application's draw is to be made now.
+/// Keeps the draw in the open run, or opens a run; false if the application's draw is to be made now.
 bool joins_run(DrawObserver& observer) {
   return observer.run_open() || observer.opens_run();
 }
@@ -106,13 +106,13 @@ void APIENTRY draw_list(GLuint list) {
   ++observer.run().draws;
 }
 
-/// Whether a count is that of slices: whatever is in error, or enormous, the application draws itself.
+/// Returns whether all counts may be those of slices; draws with invalid or enormous counts are passed on.
 bool all_wait(std::span<const GLsizei> counts) {
   return std::all_of(counts.begin(), counts.end(),
                      [](GLsizei count) { return count >= 0 && count <= most_elements; });
 }
 
-/// In scope while a draw is added to a run: all of it is kept, or nothing.
+/// In its scope a draw is added to a run: completely, or, after an exception, not at all.
 class WholeDraw {
  public:
   explicit WholeDraw(Run& run) : run_(run), begin_(run.mark()) {}
@@ -128,7 +128,7 @@ class WholeDraw {
   const int exceptions_ = std::uncaught_exceptions();
 };
 
-/// Adds one draw of vertices `first[i]`... to the run; false when its arrays are not of a kind that can wait.
+/// Adds one draw of vertices `first[i]`... to the run; false if its arrays cannot be deferred.
 bool defer_arrays(DrawObserver& observer, GLenum mode, std::span<const GLint> first,
                   std::span<const GLsizei> count) {
   ArraySources sources;
@@ -171,14 +171,14 @@ std::size_t index_size(GLenum type) {
   return type == GL_UNSIGNED_BYTE ? 1 : type == GL_UNSIGNED_SHORT ? 2 : type == GL_UNSIGNED_INT ? 4 : 0;
 }
 
-/// The indices of `range`, which lie in the application's memory.
+/// Returns the indices of `range`, which lie in the application's memory.
 std::vector<std::uint32_t> elements_in_memory(const ElementPart& range, std::size_t size) {
   std::vector<std::uint32_t> elements;
   elements.reserve(std::size_t(range.count));
   for (GLsizei i = 0; i < range.count; ++i) {
     const auto* at = static_cast<const std::byte*>(range.offset) + std::size_t(i) * size;
     std::uint32_t value = 0;
-    std::memcpy(&value, at, size);  // little-endian, as every platform with OpenGL drivers of this kind is
+    std::memcpy(&value, at, size);  // little-endian, as on every platform with such OpenGL drivers
     elements.push_back(value + std::uint32_t(range.base_vertex));
   }
   return elements;
@@ -213,7 +213,7 @@ bool defer_elements(DrawObserver& observer, GLenum mode, std::span<const Element
   return true;
 }
 
-/// One range of elements: the run takes it, or the application draws.
+/// Adds one range of elements to the run; false if the application draws.
 bool joins_run(DrawObserver& observer, GLenum mode, const ElementPart& range, GLenum type) {
   if (joins_run(observer) && defer_elements(observer, mode, {&range, 1}, type)) return true;
   observer.settle();
@@ -247,7 +247,7 @@ void APIENTRY draw_range_elements_base_vertex(GLenum mode, GLuint start, GLuint 
     observer.next().DrawRangeElementsBaseVertex(mode, start, stop, count, type, indices, base_vertex);
 }
 
-/// Several ranges by one call, without base vertices where `base_vertices` is null.
+/// Adds several ranges of one call, without base vertices if `base_vertices` is null.
 bool joins_run(DrawObserver& observer, GLenum mode, GLsizei draws, const GLsizei* count,
                const void* const* indices, const GLint* base_vertices, GLenum type) {
   std::vector<ElementPart> ranges;
@@ -274,7 +274,7 @@ void APIENTRY multi_draw_elements_base_vertex(GLenum mode, const GLsizei* count,
     observer.next().MultiDrawElementsBaseVertex(mode, count, type, indices, draws, base_vertices);
 }
 
-/// Whether arrays, and elements too if `elements` says that they are drawn, lie in buffers.
+/// Returns whether arrays, and also indices if `elements` are drawn, lie in buffers.
 bool reads_buffers(DrawObserver& observer, bool elements) {
   ArraySources sources;
   if (read_array_sources(observer.context(), sources) || sources.client_memory) return false;
@@ -283,7 +283,7 @@ bool reads_buffers(DrawObserver& observer, bool elements) {
   return !elements || element_buffer != 0;
 }
 
-/// A draw from buffers, `instances` times: the run takes it by `add`, or the application draws.
+/// Adds a draw from buffers with `instances` instances to the run, by `add`; false if the application draws.
 template <class Add>
 bool joins_run_instanced(DrawObserver& observer, GLenum mode, GLsizei count, GLsizei instances, bool elements,
                          Add add) {
@@ -302,7 +302,7 @@ bool joins_run_instanced(DrawObserver& observer, GLenum mode, GLsizei count, GLs
 
 bool joins_run_instanced(DrawObserver& observer, GLenum mode, const ElementPart& range, GLenum type,
                          GLsizei instances) {
-  // A type that is in error takes the path of a negative count: the draw call is passed on.
+  // An invalid type is treated like a negative count: the draw call is passed on.
   const GLsizei count = index_size(type) != 0 ? range.count : -1;
   return joins_run_instanced(observer, mode, count, instances, true,
                              [&](Run& run) { run.draw_elements_instanced(mode, range, type, instances); });
@@ -330,7 +330,7 @@ void APIENTRY draw_elements_instanced_base_vertex(GLenum mode, GLsizei count, GL
     observer.next().DrawElementsInstancedBaseVertex(mode, count, type, indices, instances, base_vertex);
 }
 
-/// As OpenGL lays draws out in a buffer.
+/// Draw commands, as OpenGL lays them out in a buffer.
 struct ArraysCommand {
   GLuint count, instances, first, base_instance;
 };
@@ -340,7 +340,7 @@ struct ElementsCommand {
   GLuint base_instance;
 };
 
-/// The draws that `indirect` points at; none where they cannot be read, are in error, or have instances.
+/// Returns the draw commands at `indirect`; none if they cannot be read, are invalid, or use instances.
 template <class Command>
 std::vector<Command> indirect_commands(DrawObserver& observer, const void* indirect, GLsizei draws,
                                        GLsizei stride) {
@@ -430,7 +430,7 @@ void APIENTRY multi_draw_elements_indirect(GLenum mode, GLenum type, const void*
     observer.next().MultiDrawElementsIndirect(mode, type, indirect, draws, stride);
 }
 
-/// More textures in a row than this are no stack.
+/// More textures in a row are not a stack.
 constexpr std::size_t most_slices = 4096;
 
 void APIENTRY bind_texture_in_run(GLenum target, GLuint texture) {
@@ -442,7 +442,7 @@ void APIENTRY bind_texture_in_run(GLenum target, GLuint texture) {
   observer.next().BindTexture(target, texture);
 }
 
-/// Who names the unit again before every slice changes nothing.
+/// Selecting the stack's unit again before every slice changes nothing.
 void APIENTRY active_texture_in_run(GLenum texture) {
   DrawObserver& observer = DrawObserver::current();
   const Pipeline* const pipeline = observer.run_open() ? &observer.run().pipeline() : nullptr;
@@ -453,7 +453,7 @@ void APIENTRY active_texture_in_run(GLenum texture) {
   observer.next().ActiveTexture(texture);
 }
 
-/// Under their names in extensions too, if the driver has the core's, by which runs make them.
+/// Also under their extension names, if the driver has the core calls, which runs use.
 void fill_instanced_draws(DispatchTable& table) {
   if (table.DrawArraysInstanced != nullptr) {
     table.DrawArraysInstanced = draw_arrays_instanced;

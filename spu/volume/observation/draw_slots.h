@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The slots of the dispatch table that the volume unit takes while it watches, and while a run is open.
+// The slots of the dispatch table that the volume unit fills while it watches, and while a run is open.
 #pragma once
 
 #include "dispatch/table.h"
 
 namespace understudy::spu {
 
-/// Draws and changes of textures are looked at; everything else stays the next unit's.
+/// Fills the slots of draws and of changes of textures; the others remain those of the next unit.
 void fill_watching_slots(DispatchTable& table);
 
-/// More slices join the run; every other call closes it first and is then made.
+/// Draws join the run as further slices; every other call first closes the run and is then made.
 void fill_deferring_slots(DispatchTable& table);
 
 }  // namespace understudy::spu

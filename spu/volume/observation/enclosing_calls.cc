@@ -6,7 +6,7 @@
 namespace understudy::spu {
 namespace {
 
-/// A function for `Slot` that first sets the observer's `Flag` to `Value`.
+/// Sets the observer's `Flag` to `Value`, then calls `Slot`.
 template <auto Flag, bool Value, auto Slot, class... Arguments>
 void APIENTRY note(Arguments... arguments) {
   DrawObserver& observer = DrawObserver::current();

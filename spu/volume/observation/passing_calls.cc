@@ -11,7 +11,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Blending and depth belong to the runs, which remember them; the others decide what later draws mean.
+/// Runs keep their own blending and depth state; the others only affect later draws.
 constexpr auto harmless = std::to_array<GLenum>(
     {GL_BLEND, GL_DEPTH_TEST, GL_CULL_FACE, GL_ALPHA_TEST, GL_LIGHTING, GL_FOG, GL_TEXTURE_1D, GL_TEXTURE_2D,
      GL_TEXTURE_3D, GL_TEXTURE_GEN_S, GL_TEXTURE_GEN_T, GL_TEXTURE_GEN_R, GL_TEXTURE_GEN_Q, GL_COLOR_MATERIAL,
@@ -20,21 +20,21 @@ constexpr auto harmless = std::to_array<GLenum>(
 bool passes(CallId call) {
   if (kind_of(call) == CallKind::vertex) return true;
   constexpr auto families = std::to_array<std::string_view>(
-      {// the draws' sources
+      {// sources of draws
        "glVertexPointer", "glTexCoordPointer", "glColorPointer", "glNormalPointer", "glVertexAttribPointer",
        "glVertexAttribFormat", "glVertexAttribBinding", "glBindVertexBuffer", "glEnableClientState",
        "glDisableClientState", "glClientActiveTexture", "glEnableVertexAttribArray",
        "glDisableVertexAttribArray", "glBindVertexArray", "glBindBuffer", "glBufferData", "glBufferSubData",
-       // where they lie
+       // positions of draws
        "glMatrixMode", "glLoadMatrix", "glLoadIdentity", "glLoadTransposeMatrix", "glMultMatrix",
        "glMultTransposeMatrix", "glPushMatrix", "glPopMatrix", "glTranslate", "glRotate", "glScale",
        "glFrustum", "glOrtho",
-       // what colours them
+       // colours of draws
        "glUseProgram", "glUniform", "glGetUniform"});
   constexpr auto single = std::to_array<std::string_view>(
       {"glActiveTexture", "glActiveTextureARB", "glBindTexture", "glBindTextureEXT", "glBlendFunc",
        "glBlendFuncSeparate", "glBlendEquation", "glBlendEquationSeparate", "glDepthMask", "glDepthFunc",
-       // questions whose answer is no pixel
+       // queries that return no pixels
        "glGetError", "glGetIntegerv", "glGetFloatv", "glGetDoublev", "glGetBooleanv", "glGetString",
        "glIsEnabled", "glGetAttribLocation"});
   const std::string_view name = call_name(call);

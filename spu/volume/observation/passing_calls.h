@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls while runs wait for the others of their volume: those that neither see pixels nor change what the
-// image will be shown with go by, every other one shows what waits first.
+// Selects the calls that may pass while runs wait for others of their volume: those that neither read pixels
+// nor change the state with which the image will be shown. Before any other call, the waiting runs are shown.
 #pragma once
 
 #include "dispatch/call_id.h"
@@ -9,7 +9,7 @@
 namespace understudy::spu {
 
 bool passes_held_runs(CallId call);
-/// The same of glEnable and glDisable.
+/// The same for glEnable and glDisable.
 bool passes_held_runs(GLenum capability);
 
 }  // namespace understudy::spu

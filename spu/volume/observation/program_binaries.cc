@@ -18,7 +18,7 @@ void APIENTRY known_program_binary(GLuint program, GLenum format, const void* bi
   const std::span bytes(static_cast<const std::byte*>(binary), std::size_t(length));
   if (observer.chain().group().programs().knows_binary(bytes))
     return next.ProgramBinary(program, format, binary, length);
-  // The driver itself says no: to so many bytes that are no program.
+  // Makes the driver itself refuse: passes as many bytes that are not a program.
   const std::vector<std::byte> no_program(bytes.size());
   next.ProgramBinary(program, format, no_program.data(), length);
 }

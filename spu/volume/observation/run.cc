@@ -9,7 +9,7 @@ namespace understudy::spu {
 
 void Run::bind_slice(GLuint texture) {
   append_call(calls_, &DispatchTable::BindTexture, GL_TEXTURE_2D, texture);
-  // For feedback mode; core profiles have none, and no fixed-function vertices either.
+  // For feedback mode; core profiles have neither it nor fixed-function vertices.
   if (!pipeline_.vertex_shader) append_call(calls_, &DispatchTable::PassThrough, GLfloat(slices_.size()));
   slices_.push_back({texture, draws});
 }
@@ -56,7 +56,7 @@ void Run::draw_kept(const DispatchTable& gl, const BufferDraw& draw) const {
   const GLsizei* const count = counts_.data() + draw.part;
   const void* const* const offset = offsets_.data() + draw.part;
   const GLint* const base = base_vertex_.data() + draw.part;
-  // Contexts that know no base vertices are never asked for one.
+  // Base vertices are used only if there are any: older contexts lack these calls.
   const bool based = std::any_of(base, base + draw.parts, [](GLint vertex) { return vertex != 0; });
   const auto parts = GLsizei(draw.parts);
   if (draw.instances != 1) {
@@ -142,7 +142,7 @@ void Run::draw_memory(const ArraySources& sources, GLenum mode,
                       std::span<const std::vector<std::uint32_t>> parts) {
   const std::size_t begin = calls_.words().size();
   for (const auto& elements : parts) append_elements(calls_, sources, mode, elements);
-  // Draws between which no attribute is set need their values looked after once.
+  // Draws between which no attribute is set save and restore attributes once.
   if (memory_draws_.empty() || memory_draws_.back().end <= attributes_read_)
     memory_draws_.push_back({.begin = begin, .end = begin, .set = {}});
   memory_draws_.back().end = calls_.words().size();

@@ -6,7 +6,7 @@
 namespace understudy::spu {
 namespace {
 
-/// So many textures of one size, one after the other, may be a volume; smaller ones are glyphs and icons.
+/// This many consecutive textures of one size may be a volume; those with smaller edges are glyphs and icons.
 constexpr int suspicious_length = 16;
 constexpr GLsizei smallest_edge = 16;
 
@@ -47,7 +47,7 @@ bool StackDetection::continues(GLsizei width, GLsizei height) {
 }
 
 bool StackDetection::add(GLuint texture) {
-  // A film goes into one and the same texture.
+  // The images of a film are uploaded to one texture, one after the other.
   if (texture == last_) return false;
   last_ = texture;
   return ++length_ == suspicious_length;

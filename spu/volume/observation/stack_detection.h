@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volumes as stacks of 2-D textures: what there is to see of them before anything is drawn.
+// Detects volumes that are stacks of 2-D textures before anything is drawn.
 #pragma once
 
 #include "dispatch/table.h"
 
 namespace understudy::spu {
 
-/// Many 2-D textures in a row that get one size.
+/// Detects many 2-D textures in a row that are defined with one size.
 class StackDetection {
  public:
-  /// Whether a texture of this size may be the next of a row.
+  /// Returns whether a texture of this size may be the next of a row.
   bool continues(GLsizei width, GLsizei height);
-  /// The next of the row has been defined; true when there are enough to be a volume.
+  /// Adds the next texture of the row; returns true when there are enough for a volume.
   bool add(GLuint texture);
 
  private:
@@ -21,7 +21,7 @@ class StackDetection {
   int length_ = 0;
 };
 
-/// Slots of the plain phase, which tell the volume unit of such rows.
+/// Fills slots of the plain phase that report such rows to the volume unit.
 void fill_stack_detection_slots(DispatchTable& table);
 
 }  // namespace understudy::spu

@@ -8,7 +8,7 @@
 namespace understudy::spu {
 namespace {
 
-/// A viewer shows its stack before so many frames are over, or makes another.
+/// A viewer shows its stack within this many frames, or creates another.
 constexpr int most_frames_without_stack = 600;
 
 }  // namespace
@@ -29,7 +29,7 @@ void StackWatch::looked_at(bool volume) {
 
 bool StackWatch::frame_without_volume() {
   if (!watched_ || (possible_ && ++frames_without_ < most_frames_without_stack)) return false;
-  // The next textures of one size begin a row of their own; one look at what they draw is enough then.
+  // The next textures of one size begin a new row; one check of what they draw is enough then.
   detection = {};
   others_ = patient_refusals - 1;
   return true;

@@ -16,7 +16,7 @@
 namespace understudy::spu {
 namespace {
 
-/// The textures of `dimensions` dimensions bound to the active unit are about to change.
+/// Reports that the textures of `dimensions` dimensions bound to the active unit are about to change.
 void bound_textures_change(DrawObserver& observer, int dimensions) {
   constexpr std::array<std::array<GLenum, 2>, 3> bindings = {
       {{GL_TEXTURE_BINDING_1D, 0},
@@ -42,7 +42,7 @@ struct NoteTextureChange {
   }
 };
 
-/// Commands of direct state access name the texture in their first argument.
+/// Direct state access commands identify the texture by their first argument.
 template <auto Slot>
 struct ChangesNamedTexture;
 template <class... A, void (APIENTRY* DispatchTable::*Slot)(GLuint, A...)>
@@ -54,7 +54,7 @@ struct ChangesNamedTexture<Slot> {
   }
 };
 
-/// The box of an upload; empty where its numbers make no sense, and nothing is uploaded.
+/// Returns the box of an upload; empty if its sizes are invalid, and nothing is uploaded.
 volume::TexelBox box_of(GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth) {
   const auto end = [](GLint low, GLsizei extent) {
     return int(std::clamp<std::int64_t>(std::int64_t(low) + extent, low, std::numeric_limits<int>::max()));
@@ -62,7 +62,7 @@ volume::TexelBox box_of(GLint x, GLint y, GLint z, GLsizei width, GLsizei height
   return {{x, y, z}, {end(x, width), end(y, height), end(z, depth)}};
 }
 
-/// A box of one level of the texture bound to `target` is about to change.
+/// Reports that a box of one level of the texture bound to `target` is about to change.
 void bound_box_changes(GLenum target, GLint level, const volume::TexelBox& box) {
   DrawObserver& observer = DrawObserver::current();
   GLint texture = 0;
@@ -119,8 +119,8 @@ void APIENTRY clear_tex_sub_image(GLuint texture, GLint level, GLint x, GLint y,
                                                   value);
 }
 
-/// Of a copy only the destination changes. Its box is as large as the source's, or smaller where the source is
-/// compressed; what is compressed itself is no volume. Renderbuffers are no textures.
+/// A copy changes only its destination. Its box is as large as the source's, or smaller if the source is
+/// compressed; a compressed destination is not a volume. Renderbuffers are not textures.
 template <auto Slot>
 void APIENTRY copy_image(GLuint from, GLenum from_target, GLint from_level, GLint from_x, GLint from_y,
                          GLint from_z, GLuint to, GLenum to_target, GLint to_level, GLint x, GLint y, GLint z,

@@ -17,14 +17,14 @@ struct Factors {
   bool operator==(const Factors&) const = default;
 };
 
-/// The operator of an equation that takes no factors.
+/// Returns the operator of a blend equation without factors.
 std::optional<Operator> extremum(GLint equation) {
   if (equation == GL_MAX) return Operator::max;
   if (equation == GL_MIN) return Operator::min;
   return std::nullopt;
 }
 
-/// Front to back needs an alpha that lives in the framebuffer, and changes with every slice.
+/// Front-to-back blending needs an alpha that the framebuffer stores and that every slice changes.
 std::optional<std::string> read_front_to_back(const Factors& alpha, bool written, Blending& blending) {
   if (!written) return "the slices blend by a destination alpha that the framebuffer lacks or that is masked";
   blending.op = Operator::over;
@@ -39,7 +39,7 @@ std::optional<std::string> read_front_to_back(const Factors& alpha, bool written
   return "the slices blend front to back, but their alpha does not";
 }
 
-/// As OpenGL begins with.
+/// Returns whether fragments replace pixels, as in OpenGL's initial state.
 bool replaces(GLint equation, const Factors& factors) {
   return equation == GL_FUNC_ADD && factors.source == GL_ONE && factors.destination == GL_ZERO;
 }
@@ -96,7 +96,7 @@ std::optional<std::string> read_alpha(GLint equation, const Factors& factors, Bl
       alpha.op = Operator::add;
       return std::nullopt;
     }
-    // The sum of squares has to be attenuated by the colour's own transparency.
+    // The sum of squares must be attenuated by the colour's own transparency.
     if (factors.destination == GL_ONE_MINUS_SRC_ALPHA && blending.op == Operator::over) {
       alpha.op = Operator::over;
       return std::nullopt;

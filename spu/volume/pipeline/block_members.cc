@@ -15,9 +15,9 @@
 namespace understudy::spu {
 namespace {
 
-/// OpenGL guarantees a 64th of this; some drivers allow any size.
+/// OpenGL guarantees a 64th of this size; some drivers allow any.
 constexpr GLint most_block_bytes = 1 << 20;
-/// Elements of a longer array are looked at together.
+/// The elements of a longer array form one member.
 constexpr std::size_t most_apart = 64;
 
 struct Extent {
@@ -75,11 +75,11 @@ Extent extent_of(GLenum type) {
     case GL_DOUBLE_VEC4:
       return {1, 4, 8};
     default:
-      return {4, 4, 8};  // the largest; of smaller ones what follows, too
+      return {4, 4, 8};  // the largest: a smaller one then includes what follows it
   }
 }
 
-/// Of the GL_UNIFORM_* of one uniform.
+/// Returns a GL_UNIFORM_* property of one uniform.
 std::size_t asked(const DispatchTable& gl, GLuint program, GLuint uniform, GLenum what) {
   GLint answer = 0;
   gl.GetActiveUniformsiv(program, 1, &uniform, what, &answer);
@@ -161,7 +161,7 @@ std::optional<std::vector<std::byte>> block_contents(const DispatchTable& gl, GL
 
 void append_digest(std::span<const std::byte> bytes, std::vector<float>& values) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  // 64 bits as four numbers that floats hold.
+  // 64 bits as four values that floats hold exactly.
   for (std::uint64_t hash = std::hash<std::string_view>()(text), part = 0; part < 4; ++part, hash >>= 16)
     values.push_back(float(hash & 0xffff));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lies in the uniform blocks of the application's program, member by member: a camera that moves in every
-// frame and a plane that stays lie in one buffer.
+// Lists the contents of the uniform blocks of the application's program, member by member: a camera that
+// changes in every frame and a plane that does not may be in one buffer.
 #pragma once
 
 #include <cstddef>
@@ -15,21 +15,21 @@ namespace understudy::spu {
 
 struct GlContext;
 
-/// A number, vector or matrix; of a long array, all of them.
+/// A scalar, vector or matrix; a long array as a whole.
 struct BlockMember {
-  std::string name;        ///< "Block.member" of a block with an instance name, "lights[2].place" of others
-  GLuint block = 0;        ///< its index in the program
+  std::string name;        ///< "Block.member" of a block with an instance name, otherwise "lights[2].place"
+  GLuint block = 0;        ///< index in the program
   std::size_t offset = 0;  ///< bytes in the block
-  std::size_t bytes = 0;   ///< with the gaps of its rows, but for the last one
+  std::size_t bytes = 0;   ///< with the gaps between its rows
 };
 
-/// Of all active blocks of `program`.
+/// Returns the members of all active blocks of `program`.
 std::vector<BlockMember> block_members(const GlContext& context, GLuint program);
 
-/// What a block of `program` holds; nothing where its buffer cannot be read.
+/// Returns the contents of a block of `program`; null if its buffer cannot be read.
 std::optional<std::vector<std::byte>> block_contents(const DispatchTable& gl, GLuint program, GLuint block);
 
-/// Four numbers, of which one differs where bytes do.
+/// Appends a hash of the bytes as four values: at least one differs if the bytes do.
 void append_digest(std::span<const std::byte> bytes, std::vector<float>& values);
 
 }  // namespace understudy::spu

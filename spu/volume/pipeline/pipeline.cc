@@ -34,7 +34,7 @@ GLuint bound_texture(const DispatchTable& gl, GLenum target, int unit) {
   return GLuint(texture);
 }
 
-/// Texture target of a sampler uniform's type; 0 for samplers that volume viewers' tables do not use.
+/// Returns the texture target of a sampler uniform's type; 0 for types that volume viewers do not use.
 GLenum target_of_sampler(GLenum type) {
   switch (type) {
     case GL_SAMPLER_1D:
@@ -50,8 +50,8 @@ GLenum target_of_sampler(GLenum type) {
   }
 }
 
-/// Of the 2-D textures that a program samples, the one on the active unit: who draws slice after slice binds
-/// them there.
+/// Chooses from the 2-D textures that a program samples the one on the active unit: an application that draws
+/// slice after slice binds them there.
 void take_slice(const DispatchTable& gl, Pipeline& pipeline) {
   const GLint active = state_value(gl, GL_ACTIVE_TEXTURE) - GL_TEXTURE0;
   const auto slice = std::ranges::find_if(pipeline.others, [&](const SampledTexture& sampled) {
@@ -63,7 +63,7 @@ void take_slice(const DispatchTable& gl, Pipeline& pipeline) {
   pipeline.others.erase(slice);
 }
 
-/// Using another program, and then this one again, resets what was chosen.
+/// Subroutine choices are lost when another program, and then this one, is used.
 bool has_subroutines(const GlContext& context, GLuint program) {
   if (context.version < 400) return false;
   const auto count = [&](GLenum stage) {
@@ -74,13 +74,13 @@ bool has_subroutines(const GlContext& context, GLuint program) {
   return count(GL_FRAGMENT_SHADER) + count(GL_VERTEX_SHADER) > 0;
 }
 
-/// The one 3-D texture and the tables that a program samples, or the slice of a stack; a reason where that is
-/// not the shape of it.
+/// Finds the only 3-D texture and the tables that a program samples, or the slice of a stack. Returns a reason
+/// if the program is not of this form.
 std::optional<std::string> read_program_textures(const GlContext& context, const ShareGroup& group,
                                                  ProgramSamplers& samplers, bool stacks, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
   const std::shared_ptr<const ProgramRecord> record = group.programs().program(pipeline.program);
-  if (record == nullptr) return std::nullopt;  // never linked in our sight: no 3-D sampler known
+  if (record == nullptr) return std::nullopt;  // its link was not observed: no 3-D sampler is known
   int volumes = 0;
   for (const SamplerUniform& sampler : samplers.of(gl, pipeline.program, record->link)) {
     const GLenum target = target_of_sampler(sampler.type);
@@ -88,9 +88,9 @@ std::optional<std::string> read_program_textures(const GlContext& context, const
     gl.GetUniformiv(pipeline.program, sampler.location, &unit);
     if (target == 0) continue;
     SampledTexture sampled{target, unit, bound_texture(gl, target, unit), sampler.location};
-    // A second sampler on the volume's unit reads the same texture. Viewers leave an unused one on unit 0.
+    // A second sampler on the volume's unit reads the same texture. Viewers leave unused samplers on unit 0.
     if (target == GL_TEXTURE_3D && volumes > 0 && unit == pipeline.volume.unit) continue;
-    // A 3-D sampler without a texture (a mask that is not in use) gives the same everywhere: PyMOL has one.
+    // A 3-D sampler without a texture (a mask that is not in use) returns one value everywhere: PyMOL has one.
     if (target == GL_TEXTURE_3D && sampled.texture != 0) {
       ++volumes;
       pipeline.volume = sampled;
@@ -110,8 +110,8 @@ std::optional<std::string> read_program_textures(const GlContext& context, const
   return std::nullopt;
 }
 
-/// Whether the text of the bound fragment assembly program can name a 3-D texture at all: a target is spelled
-/// one way only.
+/// Returns whether the bound fragment assembly program can name a 3-D texture: there is only one spelling of
+/// the target.
 bool may_sample_3d(const DispatchTable& gl) {
   GLint length = 0;
   gl.GetProgramivARB(GL_FRAGMENT_PROGRAM_ARB, GL_PROGRAM_LENGTH_ARB, &length);
@@ -121,7 +121,7 @@ bool may_sample_3d(const DispatchTable& gl) {
   return text.find("3D") != std::string::npos;
 }
 
-/// Assembly programs do not tell what they sample: any texture that is bound may be it.
+/// What an assembly program samples cannot be queried: it may be any texture that is bound.
 std::optional<std::string> read_assembly_textures(const GlContext& context, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
   if (!may_sample_3d(gl)) return std::nullopt;
@@ -147,7 +147,8 @@ std::optional<std::string> read_assembly_textures(const GlContext& context, Pipe
   return std::nullopt;
 }
 
-/// User clip planes cut a vertex assembly program's result only where it asks for that, which it does not tell.
+/// User clip planes clip the output of a vertex assembly program only if it requests that, which cannot be
+/// queried.
 std::optional<std::string> read_vertex_assembly(const GlContext& context) {
   const DispatchTable& gl = *context.gl;
   if (!context.vertex_assembly || !gl.IsEnabled(GL_VERTEX_PROGRAM_ARB)) return std::nullopt;
@@ -158,7 +159,8 @@ std::optional<std::string> read_vertex_assembly(const GlContext& context) {
   return std::nullopt;
 }
 
-/// Fog by the distance from the eye's plane is a map of the position, as the camera is.
+/// Fog by the distance from the eye plane is an affine map of the position, like the camera; other fog is
+/// refused.
 std::optional<std::string> read_fog(const GlContext& context, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
   pipeline.fog = true;
@@ -207,7 +209,7 @@ std::optional<std::string> read_fixed_function_textures(const GlContext& context
   return std::nullopt;
 }
 
-/// Queries in progress whose answer our own drawing would change.
+/// Refuses queries in progress whose result our own drawing would change.
 std::optional<std::string> read_queries(const GlContext& context) {
   const DispatchTable& gl = *context.gl;
   const auto in_progress = [&](GLenum target) {
@@ -233,8 +235,8 @@ std::optional<std::string> read_queries(const GlContext& context) {
   return std::nullopt;
 }
 
-/// Within a slice all samples of a pixel get the colour at its centre, as from our image, unless each sample
-/// is shaded or masked by itself.
+/// Within a slice all samples of a pixel get the colour at its centre, as in our image, unless samples are
+/// shaded or masked individually.
 std::optional<std::string> read_sample_operations(const GlContext& context, const Target& target) {
   const DispatchTable& gl = *context.gl;
   if (target.samples == 0 || !gl.IsEnabled(GL_MULTISAMPLE)) return std::nullopt;
@@ -247,7 +249,7 @@ std::optional<std::string> read_sample_operations(const GlContext& context, cons
   return std::nullopt;
 }
 
-/// What of polygons' own state changes which pixels slices cover.
+/// Refuses state of polygons that changes which pixels slices cover.
 std::optional<std::string> read_rasterisation(const GlContext& context) {
   const DispatchTable& gl = *context.gl;
   std::array<GLint, 2> mode{};
@@ -280,7 +282,7 @@ std::optional<std::string> read_depth_test(const DispatchTable& gl, Pipeline& pi
   return std::nullopt;
 }
 
-/// What around the fragments keeps us from standing in.
+/// Refuses state around the fragments with which they cannot be substituted.
 std::optional<std::string> read_surroundings(const GlContext& context, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
   pipeline.target = read_target(gl);
@@ -318,12 +320,12 @@ PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group,
     reason = read_fixed_function_textures(context, stacks, pipeline);
   }
   if (pipeline.volume.texture == 0) return NotAVolume{};
-  // One fragment may be a whole ray, but only of a program.
+  // A fragment can be a whole ray only if a program computes it.
   const bool may_be_rays = pipeline.program != 0 && !pipeline.stack;
   if (!may_be_rays && !gl.IsEnabled(GL_BLEND)) reason = slices_replace;
   if (!reason) reason = read_surroundings(context, pipeline);
   if (!reason && !may_be_rays && pipeline.blending.replaces) reason = slices_replace;
-  // One textured quad is no sign of a volume: nothing is said of it.
+  // One textured quad does not indicate a volume: nothing is reported.
   if (reason && pipeline.stack) return NotAVolume{};
   if (reason) return LeftAlone{pipeline.volume.texture, *reason};
   return pipeline;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which draws may be a volume: the state that surrounds them, read from the driver when a draw is about to
-// happen.
+// Recognises draws that may be a volume by the state that surrounds them, which is read from the driver before
+// the draw.
 #pragma once
 
 #include <array>
@@ -31,12 +31,12 @@ struct SampledTexture {
 /// The pipeline of a run of slices.
 struct Pipeline {
   GLuint program = 0;          ///< 0: fixed function
-  bool assembly = false;       ///< fragments are an ARB assembly program's; `program` is 0
-  bool vertex_shader = false;  ///< false: fixed-function vertices, observed by feedback
+  bool assembly = false;       ///< fragments come from an ARB assembly program; `program` is 0
+  bool vertex_shader = false;  ///< false: fixed-function vertices, captured by feedback
   SampledTexture volume;
-  bool stack = false;                  ///< `volume` is the first of a stack of 2-D textures, perhaps
+  bool stack = false;                  ///< `volume` may be the first of a stack of 2-D textures
   std::vector<SampledTexture> others;  ///< look-up tables of the program
-  bool fog = false;  ///< fixed function fades fragments by their distance from the eye's plane
+  bool fog = false;                    ///< fixed function fades fragments by their distance from the eye plane
   Blending blending;
   Target target;
   bool depth_test = false;
@@ -44,9 +44,9 @@ struct Pipeline {
   bool depth_write = false;
 };
 
-/// The draw has nothing to do with volumes: left alone without a word.
+/// The draw is not related to volumes: it is passed on without a report.
 struct NotAVolume {};
-/// The draw samples a volume, but in a way that is not taken over; the reason goes to the report.
+/// The draw samples a volume in a way that is not supported; the refusal is reported.
 struct LeftAlone {
   GLuint texture = 0;
   Refusal refusal;
@@ -54,8 +54,8 @@ struct LeftAlone {
 
 using PipelineFinding = std::variant<NotAVolume, LeftAlone, Pipeline>;
 
-/// Reads the current state. Outside glBegin/glEnd only. With `stacks`, what is drawn through a 2-D texture may
-/// be a slice, too.
+/// Reads the current state. Must be called outside of glBegin/glEnd. With `stacks`, a draw with a 2-D texture
+/// may be a slice, too.
 PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group, ProgramSamplers& samplers,
                               bool stacks);
 

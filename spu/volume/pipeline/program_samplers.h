@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The samplers of the application's programs, asked of the driver once a link.
+// The samplers of the application's programs, queried from the driver once per link.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ struct SamplerUniform {
 
 class ProgramSamplers {
  public:
-  /// Samplers of 1-D, 2-D, 3-D and rectangle textures; none when the program's last link (number `link`)
-  /// failed. The answer stays valid until the next one for the same program.
+  /// Returns the samplers of 1-D, 2-D, 3-D and rectangle textures; none if the program's last link (number
+  /// `link`) failed. The result stays valid until the next call for the same program.
   const std::vector<SamplerUniform>& of(const DispatchTable& gl, GLuint program, std::uint64_t link);
 
  private:

@@ -62,7 +62,7 @@ constexpr std::array<TypedShape, 26> uniform_shapes{{
     {GL_SAMPLER_2D_SHADOW, {1, Kind::integer}},
 }};
 
-/// How a uniform type is read and written; components 0 for types that no volume shader met so far uses.
+/// How a uniform type is read and written; `components` is 0 for types that no volume shader has used so far.
 UniformShape shape_of(GLenum type) {
   const auto found = std::ranges::find(uniform_shapes, type, &TypedShape::type);
   return found == uniform_shapes.end() ? UniformShape{} : found->shape;
@@ -154,8 +154,8 @@ std::string link_log(const DispatchTable& gl, GLuint program) {
   return log.data();
 }
 
-/// The name under which a vertex shader writes what the fragment stage reads. Mesa lists gl_TexCoord[0], once
-/// lowered, as gl_in_TexCoord0.
+/// Returns the name by which a vertex shader writes what the fragment stage reads. Mesa lists gl_TexCoord[0],
+/// once lowered, as gl_in_TexCoord0.
 std::string written_name(const std::string& read) {
   for (const std::string_view prefix : {"gl_in_TexCoord", "gl_TexCoord"}) {
     if (!read.starts_with(prefix)) continue;
@@ -170,7 +170,7 @@ std::string written_name(const std::string& read) {
   return read;
 }
 
-/// Asks the fragment stage, linked alone, what it reads.
+/// Queries which inputs the fragment stage, linked alone, reads.
 void describe_fragment_stage(const GlContext& context, const ProgramRecord& record, ProgramStages& stages) {
   const DispatchTable& gl = *context.gl;
   const GLuint program = compile(gl, GL_FRAGMENT_SHADER, record.fragment_sources, gl.CreateProgram());
@@ -244,8 +244,8 @@ const char* glsl_type(const StageInput& input) {
   }
 }
 
-/// The application's vertex stage, linked to capture gl_Position and the outputs of `names`; 0 and the driver's
-/// words where that does not link.
+/// Links the application's vertex stage to capture gl_Position and the outputs `names`; returns 0 and the
+/// driver's log in `trouble` if that fails.
 GLuint link_observer(const GlContext& context, const ProgramRecord& record, GLuint application,
                      const std::vector<const char*>& names, std::string& trouble) {
   const DispatchTable& gl = *context.gl;
@@ -269,7 +269,7 @@ GLuint link_observer(const GlContext& context, const ProgramRecord& record, GLui
   return 0;
 }
 
-/// What the texts of one stage say; null where they are not understood.
+/// Returns the facts about the sources of one stage; null if they cannot be analysed.
 std::optional<program::StageFacts> facts_of(const GlContext& context, program::Stage stage,
                                             const std::vector<std::string>& sources) {
   program::StageFinding finding = program::analyse(stage, sources, {}, context.extensions);
@@ -289,16 +289,16 @@ const char* qualifier_of(program::Interpolation interpolation) {
   return "";
 }
 
-/// Of a member of an interface block, its name in the block.
+/// Returns the name of a member of an interface block within the block.
 std::string_view name_in_block(const auto& member) {
   const std::string_view name = member.name;
   const std::string prefix = member.block + ".";
   return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
 }
 
-/// The vertex stage's output that the fragment stage reads as `read`. Stages match variables by their
-/// locations, members of blocks by the names of block and member, though a block may have an instance name in
-/// one of the stages only, and others by name.
+/// Returns the vertex stage's output that the fragment stage reads as `read`. Stages match members of blocks by
+/// the names of block and member (the block may have an instance name in one of the stages only), variables
+/// with a location by location, and others by name.
 const program::Output* output_read(const program::StageFacts& vertex, const program::Input& read) {
   const auto written = std::ranges::find_if(vertex.outputs, [&](const program::Output& output) {
     if (!read.block.empty()) return output.block == read.block && name_in_block(output) == name_in_block(read);
@@ -308,9 +308,10 @@ const program::Output* output_read(const program::StageFacts& vertex, const prog
   return written == vertex.outputs.end() ? nullptr : &*written;
 }
 
-/// Reads the texts for what queries do not tell: how inputs are interpolated, and which outputs of the vertex
-/// stage they read. A text that is not understood leaves all inputs smooth and matched by name: its volume is
-/// refused. False where what is captured of the vertex stage would not be what the fragment stage reads.
+/// Gets from the sources what queries do not report: how inputs are interpolated, and which outputs of the
+/// vertex stage they read. If a source cannot be analysed, inputs remain smooth and are matched by name: its
+/// volume is refused. Returns false if what is captured of the vertex stage would not be what the fragment
+/// stage reads.
 bool read_texts(const GlContext& context, const ProgramRecord& record,
                 const std::optional<program::StageFacts>& vertex, ProgramStages& stages) {
   for (StageInput& input : stages.inputs) input.output = input.name;
@@ -347,13 +348,13 @@ bool read_texts(const GlContext& context, const ProgramRecord& record,
   return true;
 }
 
-/// Whether the output depends on one of `sources`.
+/// Returns whether the output depends on one of `sources`.
 bool depends_on(const program::Output& output, const std::set<std::uint32_t>& sources) {
   return std::ranges::any_of(output.on,
                              [&](const program::Dependence& on) { return sources.contains(on.source); });
 }
 
-/// The numbers of a uniform that do not reach the position.
+/// Returns the sources, scalars of a uniform, that do not reach the position.
 std::set<std::uint32_t> sources_beside_position(const program::StageFacts& vertex, const std::string& uniform) {
   std::set<std::uint32_t> sources;
   for (std::uint32_t i = 0; i < vertex.sources.size(); ++i) {
@@ -369,7 +370,7 @@ std::set<std::uint32_t> sources_beside_position(const program::StageFacts& verte
   return sources;
 }
 
-/// What the uniform reaches, as VertexUniform has it.
+/// Returns what the uniform reaches, as in VertexUniform.
 std::vector<InputComponent> components_reached(const std::optional<program::StageFacts>& vertex,
                                                const std::string& uniform, const ProgramStages& stages) {
   std::vector<InputComponent> reached;
@@ -396,7 +397,7 @@ std::vector<InputComponent> components_reached(const std::optional<program::Stag
   return reached;
 }
 
-/// The observer keeps no uniform that reaches neither the position nor an input.
+/// Finds the uniforms that reach inputs. All uniforms of the observer reach the position or an input.
 void find_behind_inputs(const GlContext& context, const std::optional<program::StageFacts>& vertex,
                         GLuint application, ProgramStages& stages) {
   std::vector<BlockMember> members = block_members(context, application);
@@ -475,7 +476,8 @@ ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, 
   for (const UnprobedInput& input : stages.unprobed) names.push_back(input.output.c_str());
   stages.observer = link_observer(context, record, application, names, trouble);
   if (stages.observer == 0) {
-    // A fragment stage linked alone keeps all that it declares; the vertex stage may write only some of it.
+    // A fragment stage linked alone keeps all inputs that it declares; the vertex stage may write only some of
+    // them.
     names.clear();
     const auto is_written = [&](const std::string& output) {
       const GLuint alone = link_observer(context, record, application, {output.c_str()}, trouble);
@@ -487,7 +489,7 @@ ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, 
     const std::vector<const char*> probed = names;
     for (UnprobedInput& input : stages.unprobed) input.written = is_written(input.output);
     stages.observer = link_observer(context, record, application, names, trouble);
-    // Together they may be more than feedback takes.
+    // Together they may exceed the limits of transform feedback.
     if (stages.observer == 0 && names.size() > probed.size()) {
       for (UnprobedInput& input : stages.unprobed) input.captured = false;
       stages.observer = link_observer(context, record, application, probed, trouble);
@@ -502,17 +504,18 @@ ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, 
 
 namespace {
 
-/// How the probe's outputs are declared: drivers want what the fragment stage has beside its inputs.
+/// How the probe's outputs are declared: drivers require the qualifiers that the fragment stage has at its
+/// inputs.
 struct OutputDeclaration {
-  const char* smooth;  ///< of those that are interpolated smoothly
+  const char* smooth;  ///< for outputs that are interpolated smoothly
   bool locations;
 };
 
 constexpr std::array<OutputDeclaration, 4> output_declarations{
     {{"", false}, {"smooth", false}, {"", true}, {"smooth", true}}};
 
-/// How the probe's vertex stage writes an input. Blocks have an instance name there, for stages match them by
-/// the block's own name.
+/// Returns the name by which the probe's vertex stage writes an input. Blocks have an instance name there,
+/// because stages match them by the block's own name.
 std::string written_as(const StageInput& input) {
   if (input.block.empty()) return input.name;
   return fmt::format("understudy_{}.{}", input.block, name_in_block(input));
@@ -529,7 +532,7 @@ std::string declaration_of(const StageInput& input, const OutputDeclaration& dec
                      glsl_type(input), input.block.empty() ? input.name : name_in_block(input));
 }
 
-/// Stages match blocks by the names and types of all members, and by their order.
+/// Stages match blocks by the names, types and order of all members.
 std::string declarations_of(const std::vector<StageInput>& inputs, const OutputDeclaration& declaration) {
   std::string declarations;
   std::map<std::string, std::map<std::ptrdiff_t, std::string>> members_of_block;
@@ -629,7 +632,7 @@ void copy_uniforms(const GlContext& context, GLuint from, GLuint to) {
 
 namespace {
 
-/// Numbers that differ where the blocks' contents do; one that equals nothing where they cannot be read.
+/// Appends values that differ if the blocks' contents do; a NaN, which equals nothing, if they cannot be read.
 void append_block_contents(const DispatchTable& gl, GLuint program, std::vector<UniformValue>& values) {
   GLint blocks = 0;
   gl.GetProgramiv(program, GL_ACTIVE_UNIFORM_BLOCKS, &blocks);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The application's program, taken apart: its vertex stage alone, to capture what it computes, and its fragment
-// stage under a vertex stage of ours, to show it chosen samples.
+// Takes the application's program apart: its vertex stage alone, to capture its output, and its fragment stage
+// with a vertex stage of ours, to probe it with chosen samples.
 #pragma once
 
 #include <cstddef>
@@ -24,29 +24,29 @@ struct StageInput {
   GLenum type = GL_FLOAT_VEC4;
   int components = 4;
   bool integer = false;
-  int location = -1;                  ///< as the driver has placed it, where the fragment stage stands alone
+  int location = -1;                  ///< chosen by the driver when the fragment stage is linked alone
   std::string interpolation{};        ///< "flat", "noperspective"; empty: smooth
-  std::string block{};                ///< the interface block whose member it is; empty: of none
+  std::string block{};                ///< interface block that it is a member of; empty: none
   std::ptrdiff_t place_in_block = 0;  ///< members are declared in this order
-  std::string output{};  ///< of the vertex stage that it reads: another name where both stand at one location
-  bool written = true;   ///< false: the vertex stage declares it at most, and no colour can depend on it
+  std::string output{};  ///< of the vertex stage that it reads; the name differs if both match by location
+  bool written = true;   ///< false: the vertex stage at most declares it, and no colour can depend on it
 };
 
-/// A uniform by name; array elements stand alone.
+/// A uniform by name; array elements are listed individually.
 struct StageUniform {
   std::string name;
   GLenum type = GL_FLOAT;
 };
 
-/// A varying that the fragment stage reads, of a type that is not probed: a matrix or an array.
+/// A varying that the fragment stage reads, of a type that cannot be probed: a matrix or an array.
 struct UnprobedInput {
-  std::string name;            ///< without an element
+  std::string name;            ///< without an array index
   std::size_t components = 1;  ///< of one element
   std::size_t elements = 1;
   bool array = false;
-  std::string output{};  ///< as of StageInput
-  bool written = true;   ///< likewise
-  bool captured = true;  ///< false: of what is written, nothing is known
+  std::string output{};  ///< as in StageInput
+  bool written = true;   ///< as in StageInput
+  bool captured = true;  ///< false: it is written, but its values are unknown
 
   std::size_t floats() const { return written && captured ? components * elements : 0; }
   std::string element(std::size_t index) const {
@@ -54,70 +54,70 @@ struct UnprobedInput {
   }
 };
 
-/// How many numbers a value of this type is; 1 for types that are not known.
+/// Returns the number of scalars in a value of this type; 1 for unknown types.
 std::size_t components_of_type(GLenum type);
 
-/// One number of an input of the fragment stage.
+/// One scalar of an input of the fragment stage.
 struct InputComponent {
-  std::string input;  ///< with the element, of an array
+  std::string input;  ///< with the index, of an array
   int component = 0;
 };
 
-/// A uniform that the vertex stage alone has, outside of blocks and not built in.
+/// A uniform of the vertex stage alone, outside of blocks and not built in.
 struct VertexUniform {
   StageUniform uniform;
-  /// By numbers of it that do not reach the position: those that do are seen where the volume's box is. All
-  /// inputs where the text is not understood.
+  /// Inputs reached by those of its scalars that do not reach the position: a change of the others is visible
+  /// in the position of the volume's box. All inputs if the source could not be analysed.
   std::vector<InputComponent> reaches;
 };
 
 /// A member of a uniform block of either stage.
 struct ProgramBlockMember {
   BlockMember member;
-  std::vector<InputComponent> reaches;  ///< as of VertexUniform
+  std::vector<InputComponent> reaches;  ///< as in VertexUniform
 };
 
-/// Programs built from the sources of one link of the application's program. The names live in its context.
+/// Programs built from the sources of one link of the application's program. Their names belong to its context.
 struct ProgramStages {
   std::vector<StageInput> inputs;       ///< of the fragment stage, as far as they can be captured
-  std::vector<UnprobedInput> unprobed;  ///< further inputs; captured behind the others
+  std::vector<UnprobedInput> unprobed;  ///< further inputs; captured after the others
   std::vector<StageUniform> uniforms;   ///< of the fragment stage: the camera's matrices are not among them
-  std::vector<VertexUniform> vertex_uniforms;     ///< those that reach any of `inputs` so
-  std::vector<ProgramBlockMember> block_members;  ///< where the vertex stage can be captured
+  std::vector<VertexUniform> vertex_uniforms;     ///< those that reach any input
+  std::vector<ProgramBlockMember> block_members;  ///< if the vertex stage can be captured
   bool uniform_blocks = false;                    ///< the fragment stage reads uniform buffers
   GLuint observer = 0;  ///< vertex stage; captures gl_Position, then every input that is written, then those
                         ///< of `unprobed`, interleaved as floats; 0: none
-  std::string trouble;  ///< why the fragment stage cannot be shown chosen samples; empty: it can
+  std::string trouble;  ///< why the fragment stage cannot be probed with chosen samples; empty: it can
 };
 
-/// One number of a uniform, or of what tells the contents of a uniform block.
+/// One scalar of a uniform, or of the hash of a uniform block's contents.
 struct UniformValue {
-  std::string_view name;  ///< of StageUniform; empty: of a block
+  std::string_view name;  ///< of StageUniform; empty for a block
   int component = 0;
   float value = 0;
-  bool chooses = false;  ///< an integer or a truth value: what branches are usually decided by
+  bool chooses = false;  ///< an integer or a boolean, which usually controls branches
 };
 
-/// Whether a fragment shader means the input by that name: gl_Color is what the vertex stage has written to
+/// Returns whether a fragment shader refers to the input by `name`: gl_Color is what the vertex stage writes to
 /// gl_FrontColor.
 bool is_named(const StageInput& input, const std::string& name);
 
-/// Needs the program's record; `application` is the program itself, for attribute locations.
+/// Takes the program `application` apart; `record` has its sources.
 ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application);
 
-/// The application's fragment stage (or fixed-function fragments when `record` is null) under a vertex stage
+/// Links the application's fragment stage (or fixed-function fragments if `record` is null) with a vertex stage
 /// that covers the viewport with one triangle. The input named `coordinate` (gl_TexCoord[0] for fixed function)
-/// runs over [0,1]^2 with third component 1/2; the k-th other input has the value understudy_value[k] +
-/// x understudy_across[k] + y understudy_up[k] at (x, y) of the same square (integers: the first alone).
-/// Returns 0 and sets `trouble` when it does not link.
+/// runs over [0,1]^2 with third component 1/2; the k-th other input has the value understudy_value[k] + x
+/// understudy_across[k] + y understudy_up[k] at (x, y) of the same square (integers: only the first term).
+/// Returns 0 and sets `trouble` if linking fails.
 GLuint probe_program(const GlContext& context, const ProgramRecord* record,
                      const std::vector<StageInput>& inputs, const std::string& coordinate,
                      std::string& trouble);
 
-/// Gives every uniform and uniform block of `to` the value it has in `from`, by name.
+/// Gives every uniform of `to` the value, and every uniform block the binding, that it has in `from`, by name.
 void copy_uniforms(const GlContext& context, GLuint from, GLuint to);
 
-/// What the fragment stage's uniforms and uniform blocks hold in `application` now.
+/// Returns the current values of the fragment stage's uniforms and uniform blocks in `application`.
 std::vector<UniformValue> fragment_uniform_values(const GlContext& context, GLuint application,
                                                   const ProgramStages& stages);
 

@@ -9,7 +9,7 @@ Target read_target(const DispatchTable& gl) {
   gl.GetIntegerv(GL_DRAW_BUFFER0, &buffer);
   if (buffer == GL_NONE) return target;
   GLenum attachment = GLenum(buffer);
-  // The window system's buffers are asked for one by one, not by the names that mean several.
+  // Buffers of a window must be queried one by one, not by the names that mean several.
   if (buffer == GL_BACK || buffer == GL_FRONT_AND_BACK) attachment = GL_BACK_LEFT;
   if (buffer == GL_FRONT || buffer == GL_LEFT) attachment = GL_FRONT_LEFT;
   const auto parameter = [&](GLenum name) {

@@ -6,7 +6,7 @@
 
 namespace understudy::spu {
 
-/// Blending that puts an image made with `op` where its samples would have gone one by one.
+/// Sets the blending that puts an image made with `op` where its samples would have been blended one by one.
 void set_image_blending(const DispatchTable& gl, volume::Operator op);
 
 }  // namespace understudy::spu

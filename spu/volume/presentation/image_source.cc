@@ -20,11 +20,12 @@ void RenderedImage::keep() {
 bool ImageSource::may_be_behind(const ImageToShow& what) const {
   const Options& options = session_.options();
   if (options.frame_latency == 0 || options.has_budget() || !options.save_frames.empty()) return false;
-  // What is compared with this frame's request, or shown together with another image, belongs to this frame.
+  // An image that is compared with this frame's request, or shown together with another, must belong to this
+  // frame.
   if (what.compared_whole || is_finished_here(what.image, what.volume.march.march) ||
       what.pipeline.blending.alpha_stands_apart())
     return false;
-  // Framebuffer objects may be kept, and no window shows them again.
+  // The application may keep a framebuffer object, and a late image with it; a window is drawn again.
   GLint framebuffer = 0;
   context_.gl->GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
   return framebuffer == 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where images come from: the render service, with the application's own samples, or with those that keep the
-// error or the time that was asked for.
+// Gets images from the render service, with the application's own samples, or with samples that keep the error
+// or the time that was requested.
 #pragma once
 
 #include "spu/volume/geometry/polygon.h"
@@ -23,22 +23,22 @@ class RenderService;
 
 namespace understudy::spu {
 
-/// An image on its way to the framebuffer.
+/// An image that is to be drawn into the framebuffer.
 struct RenderedImage {
-  volume::ImageView shown;  ///< the service's, gone with its next one; or the one that is kept here
+  volume::ImageView shown;  ///< the service's, valid until its next image; or `kept`
   volume::Image kept;
   volume::FrameCounts counts;
 
   void keep();
 };
 
-/// What is to be shown of one volume.
+/// Describes the image of one volume that is to be shown.
 struct ImageToShow {
   const Pipeline& pipeline;
   ImageRequest& image;
   KnownVolume& volume;
-  bool compared_whole = false;            ///< before it is shown
-  const ObservedPolygons* box = nullptr;  ///< of a ray caster: what its fragments cover
+  bool compared_whole = false;            ///< compared as a whole before it is shown
+  const ObservedPolygons* box = nullptr;  ///< of a ray caster: the polygons that its fragments cover
 };
 
 class ImageSource {
@@ -47,9 +47,9 @@ class ImageSource {
               FrameAccount& account)
       : context_(context), session_(session), ray_casters_(ray_casters), account_(account) {}
 
-  /// With the samples of the request.
+  /// Renders the samples of the request.
   void cast_own_samples(compositor::RenderService& service, const ImageToShow& what, RenderedImage& image);
-  /// With samples as the error or the time that was asked for wants them; false where they must be the
+  /// Renders with samples that keep the error or the time that was requested; false if the samples must be the
   /// application's own.
   bool cast_within_budget(compositor::RenderService& service, const ImageToShow& what, RenderedImage& image);
 

@@ -69,12 +69,12 @@ void Presenter::present_front_to_back(FrontToBack kind, const volume::ImageView&
     show(image);
     return;
   }
-  // A framebuffer that is not float clamps colours before it weights them by the room left. Colours that shine
-  // above 1 go in portions, and alpha with the last of them.
+  // A framebuffer that is not float clamps colours before it weights them by the remaining transparency.
+  // Colours above 1 are therefore drawn in portions, and alpha with the last of them.
   float brightest = 0;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4)
     brightest = std::max({brightest, image.rgba[i], image.rgba[i + 1], image.rgba[i + 2]});
-  constexpr float most_portions = 255;  // of the least room that 8 bits tell from none
+  constexpr float most_portions = 255;  // 1/255 is the least transparency that 8 bits distinguish from none
   const int portions = int(std::clamp(std::ceil(brightest), 1.0F, most_portions));
   for (int portion = portions; portion-- > 0;) {
     gl.ColorMask(mask[0], mask[1], mask[2], portion == 0 && mask[3]);
@@ -95,7 +95,7 @@ void Presenter::present_alpha(const AlphaBlending& alpha, const volume::ImageVie
 void Presenter::present(const volume::ImageView& image, const Blending& blending, const Target& target,
                         const volume::ImageView* alpha) {
   const DispatchTable& gl = *context_.gl;
-  // The application's scissor and colour mask hold for its slices, so they hold for the image.
+  // The application's scissor and colour mask apply to its slices, and so to the image.
   const GLboolean scissor = gl.IsEnabled(GL_SCISSOR_TEST);
   std::array<GLboolean, 4> mask{};
   gl.GetBooleanv(GL_COLOR_WRITEMASK, mask.data());
@@ -125,7 +125,8 @@ void Presenter::present(const volume::ImageView& image, const Blending& blending
   if (!apart || !mask[3]) return;
   gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
   if (blending.alpha.op == volume::Operator::over && blending.alpha.squared && !image.rect.empty()) {
-    // Alpha becomes sum + T * alpha; the blend unit has one source alpha, so: first the product, then the sum.
+    // Alpha becomes sum + T * alpha. The blend unit has one source alpha, so the product is drawn first, then
+    // the sum.
     gl.BlendFunc(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
   }

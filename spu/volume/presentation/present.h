@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The image goes back where the slices would have been drawn: into whatever framebuffer the application has
-// bound.
+// Draws the image where the slices would have been drawn: into the framebuffer that the application has bound.
 #pragma once
 
 #include <array>
@@ -12,15 +11,15 @@ namespace understudy::spu {
 
 struct GlContext;
 
-/// Draws images under the blending of the slices they stand for, with the application's scissor and colour
-/// mask. Holds one texture, one program and one vertex array of the context it was made in.
+/// Draws images with the blending of the slices that they replace, and with the application's scissor and
+/// colour mask. Owns one texture, one program and one vertex array of the context in which it was created.
 class Presenter {
  public:
   explicit Presenter(const GlContext& context) : context_(context) {}
 
-  /// Colour and alpha as the slices would have left them. `alpha` is the image of alpha_as_colour() where
-  /// `blending.alpha_stands_apart()`. Throws Refusal, and has drawn nothing then, where the driver does not
-  /// link the program.
+  /// Leaves colour and alpha as the slices would have left them. `alpha` is the image of alpha_as_colour() if
+  /// `blending.alpha_stands_apart()`. Throws Refusal, with nothing drawn, if the driver does not link the
+  /// program.
   void present(const volume::ImageView& image, const Blending& blending, const Target& target,
                const volume::ImageView* alpha);
 
@@ -37,7 +36,7 @@ class Presenter {
   GLuint vertex_array_ = 0;
   GLint origin_ = -1;  ///< location of the uniform that places the rectangle
   GLint first_as_alpha_ = -1;
-  GLint shown_ = -1;  ///< how much of the colour has been drawn; negative: it is drawn in one
+  GLint shown_ = -1;  ///< how much of the colour has been drawn already; negative: it is drawn in one pass
 };
 
 }  // namespace understudy::spu

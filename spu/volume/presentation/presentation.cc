@@ -18,7 +18,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Magenta wherever the volume is: an image that proves where it came from.
+/// Colours the volume magenta, which proves where the image came from.
 void tint(volume::Image& image) {
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     const float alpha = image.rgba[i + 3];
@@ -28,8 +28,8 @@ void tint(volume::Image& image) {
   }
 }
 
-/// Of a ray caster, whose whole ray is one fragment: what blending leaves of `shown` in the framebuffer's
-/// alpha.
+/// Returns what blending leaves of `shown` in the framebuffer's alpha, for a ray caster, whose whole ray is one
+/// fragment.
 volume::Image alpha_of_fragments(const volume::ImageView& shown, const AlphaBlending& blending) {
   volume::Image alpha(shown.rect);
   for (std::size_t i = 0; i < alpha.rgba.size(); i += 4) {
@@ -87,7 +87,7 @@ void Presentation::present(compositor::RenderService& service, const ImageToShow
   request.classification = alpha_as_colour(request.classification, blending.alpha);
   request.op = blending.alpha.op;
   request.fog.reset();
-  // Below half a step of what the framebuffer keeps of alpha, nothing is left to see.
+  // Less than half a step of the framebuffer's alpha is not visible.
   if (target.alpha_bits <= 8 && skips(Optimization::hidden_samples)) request.termination = 1e-3F;
   const TimedShare also_rendered(account_.clock(), &FrameShares::render);
   const compositor::Rendered alpha = service.render(request);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stage that shows a volume: its image is rendered, checked, and put where the application would have
+// The stage that shows a volume: renders its image, checks it, and puts it where the application would have
 // drawn.
 #pragma once
 
@@ -17,14 +17,14 @@ namespace understudy::spu {
 
 class Presentation {
  public:
-  /// Sees the image before it is shown, and may throw.
+  /// Receives the image before it is shown, and may throw.
   using Check = std::function<void(const volume::ImageView&)>;
 
   Presentation(const GlContext& context, RenderSession& session, ImageSource& source, FrameAccount& account)
       : session_(session), source_(source), account_(account), presenter_(context), replacer_(context) {}
 
-  /// Renders the request and puts the image into the application's framebuffer. Needs the session's lock.
-  /// Throws what `check` and the service throw; nothing is shown then.
+  /// Renders the request and draws the image into the application's framebuffer. Requires the session's lock.
+  /// Throws what `check` and the service throw; then nothing is shown.
   volume::FrameCounts show(compositor::RenderService& service, const ImageToShow& what, const Check& check);
 
  private:

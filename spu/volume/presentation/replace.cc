@@ -29,7 +29,8 @@ constexpr const char* pixel_of_image_source =
     "  if (colour == vec4(0.0)) colour = otherwise;\n"
     "}\n";
 
-/// What the application has switched on and SavedState switches off, but for blending, which is disabled.
+/// Capabilities that SavedState disables, and that stay as the application set them; blending is handled
+/// separately.
 constexpr std::array<GLenum, 5> kept_capabilities = {GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CULL_FACE,
                                                      GL_MULTISAMPLE, GL_DITHER};
 

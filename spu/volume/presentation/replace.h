@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where blending is disabled, or a pixel has several samples, the box of a ray caster is drawn again, clip
-// position by clip position, and its fragments take the image's pixels: they cover, hide and are hidden as the
-// application's would.
+// If blending is disabled, or a pixel has several samples, the box of a ray caster is drawn again with its
+// captured clip positions, and its fragments take their colours from the image: they cover, hide and are hidden
+// as the application's would.
 #pragma once
 
 #include <optional>
@@ -16,18 +16,18 @@ namespace understudy::spu {
 
 struct GlContext;
 
-/// Holds one texture, one program, one buffer and one vertex array of the context it was made in.
+/// Owns one texture, one program, one buffer and one vertex array of the context in which it was created.
 class Replacer {
  public:
   explicit Replacer(const GlContext& context) : context_(context) {}
 
-  /// Draws the triangles of `box` under the application's scissor, masks, depth test and culling. A fragment
-  /// outside of `image`, or where that is all zero, becomes `otherwise`. Throws Refusal, and has drawn nothing
-  /// then, where the driver does not link the program.
+  /// Draws the triangles of `box` with the application's scissor, masks, depth test and culling. A fragment
+  /// outside of `image`, or where the image is all zero, becomes `otherwise`. Throws Refusal, with nothing
+  /// drawn, if the driver does not link the program.
   void replace(const volume::ImageView& image, const volume::Rgba& otherwise, const ObservedPolygons& box);
-  /// The same where fragments are blended by `op`, each pixel's at most once; with `alpha`, the framebuffer's
-  /// alpha, too. A fragment outside of `image`, or where that is all zero, changes nothing: `op` is none that
-  /// this would change (min).
+  /// The same with fragments blended by `op`, at most one per pixel; with `alpha`, into the framebuffer's
+  /// alpha, too. A fragment outside of `image`, or where the image is all zero, is zero: it changes nothing
+  /// unless `op` is min, which is not allowed.
   void blend(const volume::ImageView& image, volume::Operator op, bool alpha, const ObservedPolygons& box);
 
  private:
@@ -42,7 +42,7 @@ class Replacer {
   GLuint texture_ = 0;
   GLuint vertices_ = 0;
   GLuint vertex_array_ = 0;
-  GLint origin_ = -1;  ///< locations of the uniforms that say where the image lies, in pixels
+  GLint origin_ = -1;  ///< locations of the uniforms that place the image, in pixels
   GLint extent_ = -1;
   GLint otherwise_ = -1;
 };

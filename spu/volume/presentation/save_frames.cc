@@ -14,7 +14,7 @@ namespace {
 std::string write_pfm(const std::string& path, const char* kind, const volume::Rect& size,
                       const std::vector<float>& values) {
   std::ofstream file(path, std::ios::binary);
-  // A negative scale says little-endian; rows are bottom up, as in the framebuffer.
+  // A negative scale means little-endian; rows are bottom up, as in the framebuffer.
   file << kind << '\n' << size.width << ' ' << size.height << "\n-1.0\n";
   file.write(reinterpret_cast<const char*>(values.data()), std::streamsize(values.size() * sizeof(float)));
   file.close();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Composited frames as files: float images that can be compared to the last bit (`understudy compare`).
+// Writes composited frames to files: float images that can be compared to the last bit (`understudy compare`).
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace understudy::spu {
 
 /// Writes FOLDER/frame_NNNN.pfm (colour, premultiplied) and FOLDER/frame_NNNN_alpha.pfm over the whole of
-/// `viewport`, `outside` where the image ends. Returns what went wrong, or an empty string.
+/// `viewport`, with `outside` where there is no image. Returns what went wrong, or an empty string.
 std::string save_frame(const std::string& folder, std::uint64_t number, const volume::Rect& viewport,
                        const volume::ImageView& image, float outside);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Operators and constructors.
+// Evaluates operators and constructors.
 #include <algorithm>
 #include <array>
 
@@ -57,12 +57,12 @@ Value Walk::construct(const TType& type, const TIntermSequence& arguments) {
     if (type.isMatrix() && (only.isMatrix() || all.size() == 1)) return construct_matrix(type, all, only);
     if (all.size() == 1) all.resize(cells, all[0]);
   }
-  // Longer vectors are cut off.
+  // Longer vectors are truncated.
   all.resize(cells, values_.constant(0));
   return all;
 }
 
-/// From a scalar the diagonal, from another matrix what both have; the rest as in the identity.
+/// From a scalar the diagonal, from another matrix the common part; the rest as in the identity.
 Value Walk::construct_matrix(const TType& type, const Value& from, const TType& from_type) {
   Value value;
   const int from_rows = from_type.isMatrix() ? from_type.getMatrixRows() : 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs in assembly language: a straight line of instructions, so one walk over them is enough.
+// Programs in assembly language: a sequence of instructions without branches, so one walk over them is enough.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -20,7 +20,7 @@ struct Unsupported {
 };
 
 constexpr std::string_view letters = "xyzw";
-/// The front end has operators of its own.
+/// Smaller numbers are operators of the front end.
 constexpr std::uint32_t first_operator = 1U << 21U;
 
 SourceKind kind_of_binding(const std::string& binding) {
@@ -47,7 +47,7 @@ std::size_t dimensions_of(TextureShape shape) {
   return shape == TextureShape::plane || shape == TextureShape::rectangle ? 2 : 3;
 }
 
-/// How components of a result come from the operands.
+/// Which components of the operands a component of the result depends on.
 enum class Shape { each, first, three, four, all, cross };
 
 std::optional<Shape> shape_of_instruction(const std::string& name) {
@@ -100,7 +100,7 @@ class AssemblyWalk {
       throw Unsupported{"OPTION " + option};
   }
 
-  /// "name=binding" or "name[4]={...}"; blanks are gone.
+  /// "name=binding" or "name[4]={...}", without blanks.
   void declare(const std::vector<std::string>& operands) {
     const std::string& text = operands.at(0);
     const std::size_t equals = text.find('=');
@@ -113,7 +113,7 @@ class AssemblyWalk {
       bindings_[name] = binding;
   }
 
-  /// Of "{program.env[0..3],state.matrix.mvp}", as far as they are listed one by one.
+  /// Returns the elements of "{program.env[0..3],state.matrix.mvp}": ranges are expanded, matrices are not.
   static std::vector<std::string> elements_of(const std::string& list) {
     std::vector<std::string> elements;
     std::string current;
@@ -141,14 +141,14 @@ class AssemblyWalk {
       elements.push_back(binding.substr(0, bracket) + "[" + std::to_string(i) + "]");
   }
 
-  /// Through aliases and declared names to a register or what it is bound to.
+  /// Resolves aliases and declared names to a register or its binding.
   std::string resolved(std::string name) const {
     const std::size_t bracket = name.find('[');
     const auto array = arrays_.find(name.substr(0, bracket));
     if (bracket != std::string::npos && array != arrays_.end()) {
       const bool known = std::isdigit(static_cast<unsigned char>(name[bracket + 1])) != 0;
       const std::size_t index = known ? std::stoul(name.substr(bracket + 1)) : array->second.size();
-      // A matrix among the elements stands for its rows.
+      // A matrix among the elements stands for all its rows.
       return index < array->second.size() ? array->second[index] : array->first + "[*]";
     }
     for (int hops = 0; hops < 8; ++hops) {
@@ -320,7 +320,7 @@ class AssemblyWalk {
     return found->second;
   }
 
-  /// OPTION ARB_fog_*: colours, but not their opacity, are faded by the fog coordinate.
+  /// OPTION ARB_fog_*: the fog coordinate fades colours, but not their opacity.
   void add_fog() {
     if (!fog_) return;
     const Value coordinate = read_register("fragment.fogcoord");

@@ -24,7 +24,7 @@ std::string without_comments(const std::string& text) {
   return kept;
 }
 
-/// At commas outside brackets and braces, without blanks.
+/// Splits at commas outside of brackets and braces, and drops blanks.
 std::vector<std::string> split_operands(std::string_view text) {
   std::vector<std::string> operands;
   std::string current;
@@ -51,7 +51,7 @@ Instruction instruction_of(std::string_view statement, int line) {
   return instruction;
 }
 
-/// 'r', 'g', 'b', 'a' are 'x', 'y', 'z', 'w'; 0 for other letters.
+/// Maps 'r', 'g', 'b', 'a' to 'x', 'y', 'z', 'w'; returns 0 for other letters.
 char component_letter(char letter) {
   static constexpr std::string_view letters = "xyzwrgba";
   const std::size_t found = letters.find(letter);

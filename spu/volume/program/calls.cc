@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls: into the functions of the text, and of built-in ones.
+// Calls of the shader's own functions and of built-in ones.
 #include <algorithm>
 #include <utility>
 
@@ -45,7 +45,7 @@ Value Walk::call_function(const TIntermSequence& arguments, const TIntermNode& a
   return {first, first + function.returned_cells};
 }
 
-/// Where what the function leaves in its parameters goes.
+/// Returns where the values that the function leaves in its parameters are written.
 std::vector<std::optional<Place>> Walk::bind_parameters(const TIntermSequence& arguments,
                                                         const Function& function) {
   const TIntermSequence& parameters = parameters_of(function);
@@ -77,7 +77,7 @@ void Walk::walk_body(const Function& function) {
   meet(state_, returned.state, returned.decided_by, point(*function.node, 0));
 }
 
-/// Variables of a function begin anew with every call.
+/// The variables of a function begin undefined in every call.
 void Walk::forget_locals(const Function& function) {
   for (const std::size_t local : function.locals) {
     const Variable& variable = variables_.list()[local];
@@ -130,7 +130,7 @@ Value Walk::call_builtin(const TIntermAggregate& node) {
   return value;
 }
 
-/// What a built-in function can depend on besides its arguments.
+/// Returns what a built-in function can depend on besides its arguments.
 std::optional<Walk::Set> Walk::source_of_builtin(TOperator op) {
   if (op == EOpNoise) return own_source(SourceKind::noise, "noise");
   if (op >= EOpInterpolateAtCentroid && op <= EOpInterpolateAtVertex)

@@ -20,7 +20,7 @@ bool is_in_word(char letter) {
   return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '_';
 }
 
-/// Behind the `#`; empty where the line is no directive. Comments before it are passed over.
+/// Returns what follows the `#`; empty if the line is no directive. Skips comments before it.
 std::string_view directive_in(std::string_view line) {
   while (true) {
     line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size()));
@@ -40,7 +40,7 @@ std::string_view first_word(std::string_view text) {
   return text.substr(0, std::size_t(end - text.begin()));
 }
 
-/// Whether it can hold macros that decide what is compiled.
+/// Returns whether the directive can contain macros that decide what is compiled.
 bool decides(std::string_view directive) {
   const std::string_view name = first_word(directive);
   return name == "if" || name == "ifdef" || name == "ifndef" || name == "elif" || name == "define";
@@ -90,7 +90,7 @@ class MacroReader {
   }
 
   const std::span<const std::string>* extensions_;
-  std::set<std::string, std::less<>> own_;  ///< that the text defines
+  std::set<std::string, std::less<>> own_;  ///< defined by the source
   std::optional<std::string> unknown_;
   bool continues_ = false;
 };

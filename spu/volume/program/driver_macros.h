@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Macros that a driver defines by what it can do. The front end can other things: where the text asks for such
-// a macro, it gets the driver's answer.
+// Macros that a driver defines by what it supports. The front end supports other things: a source that tests
+// such a macro gets the driver's value.
 #pragma once
 
 #include <span>
@@ -11,12 +11,12 @@
 
 namespace understudy::spu::program {
 
-/// Goes before the text.
+/// Goes before the source.
 inline constexpr const char* macro_preamble = "#define understudy_present 1\n";
 
-/// `source` with the names of extensions in directives replaced by understudy_present or, of those that are not
-/// among `extensions`, understudy_absent. Fails where a macro that drivers define is asked for and `extensions`
-/// is null, or the macro names no extension.
+/// Returns `source` with the names of extensions in directives replaced by understudy_present or, if they are
+/// not among `extensions`, understudy_absent. Fails if it tests a macro that drivers define, and `extensions`
+/// is null or the macro names no extension.
 std::variant<std::string, Failure> with_driver_macros(const std::string& source,
                                                       const std::span<const std::string>* extensions);
 

@@ -12,7 +12,7 @@ using namespace glslang;
 
 namespace {
 
-/// The target of an assignment or increment; null for other nodes.
+/// Returns the target of an assignment or increment; null for other nodes.
 const TIntermNode* assigned(const TIntermNode& node) {
   if (const auto* binary = node.getAsBinaryNode()) {
     const bool assigns = binary->getOp() == EOpAssign || operator_of_assignment(binary->getOp()) != EOpNull;
@@ -38,7 +38,7 @@ bool Effects::has(const TIntermNode* node) {
   return known_[node] = found;
 }
 
-/// What the call writes to, parameter by parameter.
+/// Returns the arguments that the call writes to.
 std::vector<const TIntermNode*> Effects::written_by(const TIntermAggregate& call) const {
   const Function* function =
       call.getOp() == EOpFunctionCall ? variables_.function(call.getName().c_str()) : nullptr;

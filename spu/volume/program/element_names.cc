@@ -6,7 +6,8 @@
 namespace understudy::spu::program {
 namespace {
 
-/// Takes what stands before the next index, or that index with its brackets, from the front of `name`.
+/// Removes from the front of `name` the part before the next index, or that index with its brackets, and
+/// returns it.
 std::string_view take_part(std::string_view& name) {
   const std::size_t end = name.starts_with('[') ? std::min(name.find(']'), name.size() - 1) + 1
                                                 : std::min(name.find('['), name.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what the walk has found to facts.
+// Exports what the walk has found as facts.
 #include <algorithm>
 #include <map>
 #include <string>
@@ -12,7 +12,7 @@ namespace understudy::spu::program {
 
 using namespace glslang;
 
-/// The sources that are listed, each once. Variables of one name in several shaders of one stage are one.
+/// Lists sources, each of them once. Variables of one name in several shaders of one stage are one source.
 class Walk::SourceList {
  public:
   SourceList(const Variables& variables, const std::vector<Source>& own, std::vector<Source>& listed)
@@ -82,7 +82,7 @@ bool has_locations(const TType& block) {
                              [](const TTypeLoc& member) { return member.type->getQualifier().hasLocation(); });
 }
 
-/// Empty: none, or one that has locations or is an array.
+/// Returns the name of the interface block; empty if there is none, or if it has locations or is an array.
 std::string block_of(const TType& type) {
   if (type.getBasicType() != EbtBlock || type.isArray() || has_locations(type)) return {};
   return type.getTypeName().c_str();

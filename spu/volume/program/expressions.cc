@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Expressions: from nodes of the tree to values.
+// Expressions: evaluates nodes of the tree to values.
 #include <utility>
 
 #include "spu/volume/program/walk.h"
@@ -10,7 +10,7 @@ using namespace glslang;
 
 namespace {
 
-/// Places of one node at which values meet.
+/// Points of one node at which values are merged.
 enum ExpressionMeeting : std::uint32_t { at_right = 32 };
 
 bool is_integer(const TType& type) {
@@ -38,7 +38,7 @@ double number_in(const TConstUnion& value) {
   }
 }
 
-/// What an index can choose from, and how many cells each choice has.
+/// Returns the number of elements that an index can select, and the number of cells of each.
 std::pair<std::size_t, std::size_t> elements_and_cells(const TType& type, std::size_t cells_of_value) {
   const std::size_t cells = type.isArray()    ? cells_of_element(type)
                             : type.isMatrix() ? std::size_t(type.getMatrixRows())
@@ -106,7 +106,7 @@ Value Walk::evaluate_binary(const TIntermBinary& binary) {
                evaluate_operands(std::array{binary.getLeft(), binary.getRight()}), types);
 }
 
-/// The right side is executed only where the left does not decide.
+/// The right side is executed only if the left side does not decide.
 Value Walk::evaluate_logical(const TIntermBinary& binary) {
   const bool both = binary.getOp() == EOpLogicalAnd;
   const Scalar left = evaluate(binary.getLeft()).at(0);
@@ -187,13 +187,13 @@ Value Walk::evaluate_assignment(const TIntermBinary& binary) {
   return value;
 }
 
-/// What is on the right; before it, of `x += y`, what was on the left.
+/// Returns the value of the right side; for `x += y` preceded by that of the left side.
 std::vector<Value> Walk::evaluate_assigned(const TIntermBinary& binary, bool with_left) {
   const TIntermTyped* left = binary.getLeft();
   const TIntermTyped* right = binary.getRight();
   if (effects_.has(left)) {
     if (with_left || effects_.has(right)) throw NotFollowed{"two changes of variables in one expression"};
-    // The right side may be read before the left side changes what it reads, or after.
+    // The right side may be read before or after the left side changes what the right side reads.
     const State before = state_;
     place_of(left);
     const Value after = evaluate(right);
@@ -207,7 +207,7 @@ std::vector<Value> Walk::evaluate_assigned(const TIntermBinary& binary, bool wit
 }
 
 Value Walk::unknown_assignment(const TIntermBinary& binary) {
-  // Nothing that GLSL allows comes here; were it to, every cell may have been written.
+  // Valid GLSL does not get here; otherwise every cell may have been written.
   Value value = unknown_value(binary.getType(), "an assignment to what is no variable");
   for (Scalar& cell : state_.cells) {
     if (!value.empty()) cell = value[0];

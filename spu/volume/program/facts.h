@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a shader's text says about its values: which sources can reach which outputs, discards and texture
+// What a shader's source implies for its values: which sources can reach which outputs, discards and texture
 // fetches.
 //
-// Facts are safe, not sharp: a source that is not listed cannot reach the value; one that is listed may. What a
-// fetch returns is a source of its own; what its coordinate depends on is said by the fetch.
+// Facts are safe, not sharp: a source that is not listed cannot reach the value; a source that is listed may.
+// The result of a fetch is a source of its own; the fetch lists what its coordinate depends on.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@ namespace understudy::spu::program {
 enum class Stage : std::uint8_t { vertex, geometry, fragment };
 
 enum class SourceKind : std::uint8_t {
-  texel,                ///< what fetch `number` returned
-  varying,              ///< input of the geometry or fragment stage, built-in ones of old versions included
+  texel,                ///< result of fetch `number`
+  varying,              ///< input of the geometry or fragment stage, including built-in ones of old versions
   attribute,            ///< input of the vertex stage
-  uniform,              ///< with fixed-function state: gl_ModelViewMatrix, gl_Fog.density
+  uniform,              ///< including fixed-function state: gl_ModelViewMatrix, gl_Fog.density
   uniform_block,        ///< member of a uniform buffer
   storage_buffer,       ///< member of a shader storage buffer
   image,                ///< texel read by imageLoad
-  texture_size,         ///< what textureSize, textureQueryLevels and relatives tell of a sampler
+  texture_size,         ///< result of textureSize, textureQueryLevels and the like for a sampler
   fragment_coordinate,  ///< gl_FragCoord
   front_facing,
   point_coordinate,
@@ -31,42 +31,43 @@ enum class SourceKind : std::uint8_t {
   primitive,     ///< gl_PrimitiveID
   layer,         ///< gl_Layer, gl_ViewportIndex
   vertex_index,  ///< gl_VertexID, gl_InstanceID
-  iteration,     ///< how often loop `number` has been run through
-  derivative,    ///< values of neighbouring pixels: dFdx and relatives, interpolateAt*
+  iteration,     ///< number of the current iteration of loop `number`
+  derivative,    ///< values of neighbouring pixels: dFdx and the like, interpolateAt*
   noise,
   atomic_counter,
-  undefined,  ///< a variable that nothing was written to
-  unknown,    ///< what the analysis does not follow; `name` says what
+  undefined,  ///< a variable that was never written
+  unknown,    ///< what the analysis does not follow; described by `name`
 };
 
-/// One number that a shader stage can read.
+/// One scalar that a shader stage can read.
 struct Source {
   SourceKind kind = SourceKind::unknown;
   std::string name;  ///< as OpenGL queries spell it: "light[1].colour", "gl_TexCoord[0]"; of texels the sampler
   int component = 0;       ///< of matrices, column by column
-  int components = 1;      ///< that the variable has; of a matrix, all
-  int rows = 1;            ///< of a matrix's column; of a vector, `components`
+  int components = 1;      ///< of the variable; of a matrix, all
+  int rows = 1;            ///< of a matrix; of a vector, `components`
   std::size_t number = 0;  ///< of the fetch or of the loop
 };
 
-/// "varying texcoord.z", "uniform time", "texel of 'volume'", "gl_FragCoord.x".
+/// Describes a source: "varying texcoord.z", "uniform time", "texel of 'volume'", "gl_FragCoord.x".
 std::string text(const Source& source);
 
-/// How a source reaches a value: by the highest of these that is on the way.
+/// How a source reaches a value: the highest of these along the path.
 enum class Flow : std::uint8_t {
   data,    ///< by arithmetic, or as an index
-  branch,  ///< decides which of several values it is
-  loop,    ///< decides when a loop ends, and so how often something was done
+  branch,  ///< selects one of several values
+  loop,    ///< decides when a loop ends, and thus how often something is done
 };
 
-/// A source (by its place in StageFacts::sources) and a way by which it reaches a value. There may be several.
+/// A source (its index in StageFacts::sources) and how it reaches a value. A source may have several
+/// dependences.
 struct Dependence {
   std::uint32_t source = 0;
   Flow flow = Flow::data;
   auto operator<=>(const Dependence&) const = default;  // NOLINT(modernize-use-nullptr): there is no pointer
 };
 
-/// In rising order.
+/// In ascending order.
 using Dependences = std::vector<Dependence>;
 
 enum class TextureShape : std::uint8_t { line, plane, space, cube, rectangle, buffer, other };
@@ -81,18 +82,18 @@ struct SamplerType {
   bool operator==(const SamplerType&) const = default;
 };
 
-/// "usampler2DArray".
+/// Returns the name of the type in GLSL, such as "usampler2DArray".
 std::string text(const SamplerType& type);
 
 enum class FetchFunction : std::uint8_t {
-  filtered,  ///< texture and relatives
+  filtered,  ///< texture and the like
   exact,     ///< texelFetch
   gathered,  ///< textureGather
 };
 
-/// A texture function at one place of the text, reached by one chain of calls.
+/// A texture function at one point of the source, reached by one chain of calls.
 struct Fetch {
-  std::string sampler;  ///< "volume", "textures[2]"; "textures[*]" where an index decides; empty: not known
+  std::string sampler;  ///< "volume", "textures[2]"; "textures[*]" if an index decides; empty: unknown
   SamplerType type;
   FetchFunction function = FetchFunction::filtered;
   bool projected = false;
@@ -100,11 +101,11 @@ struct Fetch {
   bool level = false;     ///< the level of detail is given
   bool gradient = false;  ///< the derivatives are given
   bool bias = false;
-  std::vector<Dependences> coordinate;  ///< by component, that of an array's layer last, after the projection
-  std::vector<std::optional<std::uint32_t>> exact;  ///< the source that a component equals
-  Dependences modifiers;  ///< of level, bias, gradients, offsets, reference value, and which sampler it is
+  std::vector<Dependences> coordinate;  ///< by component, after projection; the layer of an array is last
+  std::vector<std::optional<std::uint32_t>> exact;  ///< the source that a component equals, if any
+  Dependences modifiers;  ///< of level, bias, gradients, offsets, reference value, and choice of the sampler
   Dependences execution;  ///< of whether, and how often, it is executed; discards do not count
-  std::optional<std::size_t> loop;  ///< the innermost around it
+  std::optional<std::size_t> loop;  ///< the innermost loop around it
   std::uint32_t place = 0;  ///< fetches with equal places, outside loops or in one iteration, return one texel
   int line = 0;
 };
@@ -123,13 +124,13 @@ struct Input {
   int components = 0;
   int elements = 1;  ///< of an array
   bool integer = false;
-  int location = -1;  ///< in the text; -1: not there
+  int location = -1;  ///< in the source; -1: none
   int packed_at = 0;  ///< its first component at that location: layout(component = ...)
   Interpolation interpolation = Interpolation::smooth;
   bool centroid = false;
   bool sample = false;
-  /// The interface block whose member it is; empty: of none, or of one that has locations or is an array. A
-  /// member of a block with an instance name is called "Block.member", of one without "member".
+  /// The interface block that it is a member of; empty if none, or if the block has locations or is an array. A
+  /// member of a block with an instance name is called "Block.member", otherwise "member".
   std::string block{};
 };
 
@@ -138,14 +139,14 @@ struct Output {
   std::string name;  ///< "gl_FragColor", "gl_FragData[1]", "colour", "gl_FragDepth", "gl_Position"
   int component = 0;
   int components = 1;
-  int location = -1;     ///< in the text; -1: not there
-  int packed_at = 0;     ///< as Input has it
+  int location = -1;     ///< in the source; -1: none
+  int packed_at = 0;     ///< as in Input
   int index = 0;         ///< 1: second colour of dual-source blending
-  bool written = false;  ///< false: nothing is ever written to it
+  bool written = false;  ///< false: it is never written
   Dependences on;
-  std::optional<std::uint32_t> exact;  ///< the source that it equals
+  std::optional<std::uint32_t> exact;  ///< the source that it equals, if any
   Interpolation interpolation = Interpolation::smooth;
-  std::string block{};  ///< as Input has it
+  std::string block{};  ///< as in Input
 };
 
 struct Discard {
@@ -177,17 +178,17 @@ struct StageFacts {
   std::vector<Discard> discards;
   std::vector<SideEffect> side_effects;
   std::vector<std::string>
-      not_followed;  ///< functions whose meaning is not known: what they return depends on all
+      not_followed;  ///< functions of unknown meaning: results depend on all arguments and an unknown source
 };
 
-/// Why there are no facts.
+/// The reason why there are no facts.
 struct Failure {
   enum class Kind : std::uint8_t {
-    parse,        ///< the front end does not take the text; drivers may
+    parse,        ///< the front end rejects the source; drivers may accept it
     unsupported,  ///< a feature that is not analysed
     too_large,
   } kind = Kind::parse;
-  std::string what;  ///< ends up in the report
+  std::string what;  ///< printed in the report
 };
 
 }  // namespace understudy::spu::program

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What shaders read from textures, and what they do to images, buffers and counters.
+// Texture fetches of shaders, and their operations on images, buffers and counters.
 #include <algorithm>
 #include <utility>
 
@@ -67,7 +67,7 @@ std::string Walk::name_of(const Scalar& opaque) {
   return {};
 }
 
-/// A sampler that is named where it is used is no source; what decides which it is, is.
+/// A sampler that is named where it is used is no source; what selects one of several is.
 Scalar Walk::without_name(Scalar sampler) const {
   if (values_.numbers.is_leaf(sampler.number)) sampler.on = FlowSets::empty;
   return sampler;
@@ -167,7 +167,7 @@ Value Walk::use_image(const TIntermAggregate& node) {
   if (op != EOpImageLoad && op != EOpImageLoadLod)
     add_side_effect(SideEffectKind::image_atomic, name, node.getLoc().line);
   for (const Value& argument : arguments) on = values_.sets.join(on, values_.union_of(argument));
-  // What is stored between two loads changes what they return.
+  // A store between two loads changes what they return.
   return values_.with(unknown_value(node.getType(), {}), on);
 }
 

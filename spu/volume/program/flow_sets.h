@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sets of dependences, each kept once: sets are equal when their numbers are, and a union is computed once.
+// Sets of dependences, each kept once: sets are equal if their numbers are, and each union is computed once.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace understudy::spu::program {
 
-/// More than this is never needed by a shader that is worth the time.
+/// Limit of an analysis: shaders that are worth the time never need more.
 constexpr std::size_t max_dependences_kept = 1'000'000;
 
-/// An analysis that has grown past its limits. Never leaves analyse().
+/// Thrown when an analysis exceeds its limits. Never leaves analyse().
 struct TooLarge {};
 
 class FlowSets {
@@ -22,20 +22,20 @@ class FlowSets {
   using Set = std::uint32_t;
   static constexpr Set empty = 0;
 
-  /// Set 1 + n holds data from source n, for the first `leaves` sources.
+  /// Set 1 + n is {data from source n}, for the first `leaves` sources.
   explicit FlowSets(std::uint32_t leaves);
 
   Set single(std::uint32_t source, Flow flow = Flow::data);
   Set join(Set a, Set b);
-  /// Without keeping what lies between.
+  /// Does not keep intermediate unions.
   Set join(std::span<const Set> sets);
-  /// All members of `set`, reaching by `flow`, or still by the end of a loop.
+  /// All members of `set`, with their flow raised to `flow` at least.
   Set by(Flow flow, Set set);
 
   Dependences members(Set set) const;
 
  private:
-  /// Source and flow in one number, which keeps their order.
+  /// Source and flow in one integer, which keeps their order.
   using Packed = std::uint32_t;
   static constexpr Packed pack(std::uint32_t source, Flow flow) { return source * 4 + Packed(flow); }
 

@@ -17,7 +17,7 @@ namespace understudy::spu::program {
 namespace {
 
 constexpr std::size_t max_source_bytes = 1'000'000;
-/// The front end calls itself for every level; no shader that was met has more than twenty.
+/// The front end recurses for every level; shaders met so far have no more than twenty.
 constexpr int max_nesting = 200;
 constexpr EShMessages messages = EShMessages(EShMsgRelaxedErrors | EShMsgSuppressWarnings);
 
@@ -33,11 +33,11 @@ EShLanguage language_of(Stage stage) {
   return EShLangFragment;
 }
 
-/// The front end does not clean up behind an exception that runs through it: its locks stay held, and its
-/// tables half made. It is not asked again.
+/// The front end does not clean up when an exception passes through it: its locks stay held, and its tables
+/// half made. It is not used again.
 constinit std::atomic<bool> is_broken = false;
 
-/// In scope while the front end is asked; what it was making when an exception came is left to lie.
+/// In its scope the front end is used; what it was creating when an exception was thrown is leaked.
 template <class Made>
 class Asked {
  public:
@@ -79,7 +79,7 @@ bool is_too_large(std::span<const std::string> sources) {
          });
 }
 
-/// The front end's first complaint, without its prefix.
+/// Returns the front end's first error, without its prefix.
 std::string first_error(const std::string& log) {
   const std::size_t start = log.find("ERROR: ");
   if (start == std::string::npos) return log.substr(0, log.find('\n'));
@@ -90,12 +90,12 @@ std::string first_error(const std::string& log) {
 }  // namespace
 
 struct ParsedStage::Held {
-  // The program refers to the shaders.
+  // Declared before the program, which refers to the shaders.
   std::vector<std::unique_ptr<glslang::TShader>> shaders;
   std::unique_ptr<glslang::TProgram> program;
   const glslang::TIntermediate* tree = nullptr;
 
-  /// Returns what is wrong; empty: nothing.
+  /// Returns an error message; empty: there is none.
   std::string add(EShLanguage language, const std::string& source) {
     const char* text = source.c_str();
     const int length = int(source.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GLSL front end: glslang, which the Khronos Group keeps. Its symbols stay inside the library that links
-// this one: applications bring a glslang of their own.
+// The GLSL front end: glslang of the Khronos Group. Its symbols stay hidden in the library that links this one,
+// because applications may contain a glslang of their own.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ class TIntermNode;
 
 namespace understudy::spu::program {
 
-/// The tree of one stage; lives as long as this.
+/// The syntax tree of one stage, which lives as long as this object.
 class ParsedStage {
  public:
   ParsedStage(ParsedStage&&) noexcept;
@@ -35,8 +35,8 @@ class ParsedStage {
       const std::optional<std::span<const std::string>>& extensions);
 };
 
-/// Of texts that ask for extensions, `extensions` are the answer (driver_macros.h). Initialises glslang in the
-/// first call of a process, and never ends it: other threads may be parsing while the process exits.
+/// For sources that test extensions, `extensions` decide (driver_macros.h). Initialises glslang in the first
+/// call of a process, and never finalises it: other threads may be parsing while the process exits.
 std::variant<ParsedStage, Failure> parse(Stage stage, std::span<const std::string> sources,
                                          const std::optional<std::span<const std::string>>& extensions);
 

@@ -55,7 +55,7 @@ class Closure {
   std::set<Influence> found_;
 };
 
-/// With % for the subject.
+/// Predicate of a sentence; % stands for the subject.
 std::string predicate(const Influence& influence) {
   switch (influence.target) {
     case Target::colour:
@@ -76,7 +76,7 @@ std::string sentence(std::string predicate, const std::string& subject) {
   return predicate.replace(predicate.find('%'), 1, subject);
 }
 
-/// `component` of the variable holds a bit for each.
+/// The bits of `variable.component` are its components.
 std::string text_of_components(Source variable) {
   const unsigned components = unsigned(variable.component);
   const bool vector = variable.rows == variable.components && variable.components <= 4;
@@ -92,7 +92,7 @@ std::string text_of_components(Source variable) {
   return words;
 }
 
-/// The names that the vertex stage gives to a fragment stage's built-in input.
+/// Returns the names by which the vertex stage writes a built-in input of the fragment stage.
 std::vector<std::string> names_in_vertex_stage(const std::string& varying) {
   if (varying == "gl_Color") return {"gl_FrontColor", "gl_BackColor"};
   if (varying == "gl_SecondaryColor") return {"gl_FrontSecondaryColor", "gl_BackSecondaryColor"};
@@ -138,7 +138,7 @@ std::vector<UniformUse> uniform_uses(const StageFacts& fragment, std::span<const
 }
 
 std::vector<std::string> texts(const StageFacts& fragment, std::span<const Influence> influences) {
-  // By what is said of a variable, its components.
+  // By predicate and variable, its components.
   std::vector<std::pair<std::string, Source>> said;
   for (const Influence& influence : influences) {
     const Source& source = fragment.sources[influence.source];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where ways through the program meet.
+// Joins of paths through the program.
 #include <algorithm>
 
 #include "spu/volume/program/walk.h"
@@ -17,7 +17,7 @@ void Walk::meet(State& state, const State& other, Set decided_by, Number point) 
     const Scalar& there = other.cells[cell];
     if (here == there) continue;
     here.on = values_.sets.join(here.on, there.on);
-    // Where both ways bring the same value, it does not matter which was taken.
+    // If both paths bring the same value, it does not matter which was taken.
     if (here.number == there.number) continue;
     here.on = values_.sets.join(here.on, decided_by);
     here.number = values_.numbers.of(ValueNumbers::merged, {point, here.number, there.number});
@@ -35,8 +35,8 @@ Walk::Number Walk::point(const TIntermNode& node, std::uint32_t which) {
   return values_.numbers.of(ValueNumbers::merged, {path_, high, low, which});
 }
 
-/// What tells a way that ends here from those that go on to the same meeting. Earlier ends count where they met
-/// what follows elsewhere: behind a switch. Behind loops they do by Target::ends_by.
+/// Returns what distinguishes a path that ends here from those that go on to the same join. Earlier exits count
+/// if they joined what follows elsewhere, after a switch; after loops, Target::ends_by includes them.
 Walk::Set Walk::parting() {
   const bool in_switch = std::ranges::any_of(targets_, [](const Target* target) { return !target->loop; });
   return in_switch ? conditions_in_loop() : conditions_.branches;

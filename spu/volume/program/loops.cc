@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops: walked over until nothing new is found, then left with what is known of the last iteration.
+// Loops: walked over until nothing new is found, then left with the state of the last iteration.
 #include <utility>
 
 #include "spu/volume/program/walk.h"
@@ -67,7 +67,7 @@ void Walk::test_loop(const TIntermLoop& loop, Target& target) {
   if (known) state_.reachable = false;
 }
 
-/// Takes into `head` what the end of an iteration brings back to it; false when that is nothing new.
+/// Merges into `head` what the end of an iteration brings back to it; returns false if nothing is new.
 bool Walk::widen(const TIntermLoop& loop, const State& entry, State& head, std::uint32_t iteration) {
   if (!state_.reachable) return false;
   bool changed = false;
@@ -93,7 +93,7 @@ void Walk::leave_loop(const TIntermLoop& loop, const State& entry, Target& targe
   state_ = std::move(target.left.state);
 }
 
-/// Out of the loop, and of those around it.
+/// Leaves the function by a return in the loop, and thereby the loops around it.
 void Walk::leave_function(const TIntermLoop& loop, const Target& target) {
   const Set decided_by = values_.sets.join(target.returned.decided_by, target.ends_by);
   add_exit(*returns_.back(), target.returned.state,

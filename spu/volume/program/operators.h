@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the components of an operator's result come from those of its operands.
+// How the components of an operator's result depend on those of its operands.
 #pragma once
 
 #include <glslang/Include/intermediate.h>
@@ -17,16 +17,16 @@ enum class Pattern {
   cross_product,
 };
 
-/// `mixed` for all that is not known, which is true of every pure function.
+/// `mixed` for all unknown operators, which is safe for every pure function.
 Pattern pattern_of(glslang::TOperator op);
 
-/// What the compound assignment does before it assigns; EOpNull for plain assignment, and for no assignment.
+/// The operator that a compound assignment applies before it assigns; EOpNull for plain and for no assignment.
 glslang::TOperator operator_of_assignment(glslang::TOperator op);
 
 bool is_derivative(glslang::TOperator op);
 bool is_increment(glslang::TOperator op);
 
-/// Whether parameter `i` of a built-in function is written to.
+/// Returns whether a built-in function writes to its parameter `i`.
 bool writes_parameter(glslang::TOperator op, std::size_t i);
 
 }  // namespace understudy::spu::program

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Operands, which GLSL lets be read in any order: where one of them changes variables, the others may read them
-// before or after it.
+// Operands, which GLSL allows to be read in any order: if one of them changes variables, the others may read
+// them before or after the change.
 #include <algorithm>
 
 #include "spu/volume/program/walk.h"
@@ -11,7 +11,7 @@ using namespace glslang;
 
 namespace {
 
-/// Places of one node at which values meet.
+/// Points of one node at which values are merged.
 enum OrderMeeting : std::uint32_t { before_or_after = 48, of_operands };
 
 }  // namespace
@@ -46,7 +46,7 @@ std::vector<Value> Walk::evaluate_operands(std::span<const TIntermTyped* const> 
   return values;
 }
 
-/// Makes each scalar either what it was or what it is in `other`; false when nothing is new.
+/// Merges each scalar with that in `other`; returns false if nothing is new.
 bool Walk::blend(std::vector<Scalar>& scalars, const std::vector<Scalar>& other, Number point) {
   bool changed = false;
   for (std::size_t i = 0; i < scalars.size() && i < other.size(); ++i) {

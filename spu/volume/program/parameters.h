@@ -9,7 +9,7 @@ inline const glslang::TIntermSequence& parameters_of(const Function& function) {
   return function.node->getSequence().at(0)->getAsAggregate()->getSequence();
 }
 
-/// The caller sees what the function assigns to it.
+/// Returns whether the caller receives what the function assigns to the parameter.
 inline bool is_written(glslang::TStorageQualifier parameter) {
   return parameter == glslang::EvqOut || parameter == glslang::EvqInOut;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be assigned to: variables, their elements, members and components.
+// Places that can be assigned to: variables, their elements, members and components.
 #include <algorithm>
 #include <numeric>
 
@@ -11,7 +11,7 @@ using namespace glslang;
 
 namespace {
 
-/// Elements that one expression may choose from.
+/// Limit of the elements that one expression may select from.
 constexpr std::size_t max_choices = 4096;
 
 }  // namespace
@@ -68,7 +68,7 @@ void Walk::keep_parts(Place& place, std::size_t first, std::size_t count) {
   place.parts.erase(place.parts.begin(), place.parts.begin() + std::ptrdiff_t(first));
 }
 
-/// `cells`: of what is chosen.
+/// `cells`: of the selected element.
 void Walk::index_by(Place& place, const Scalar& index, std::size_t cells) {
   const std::size_t elements = place.parts.size() / std::max(cells, std::size_t(1));
   const auto known = values_.numbers.constant_of(index.number);
@@ -76,7 +76,7 @@ void Walk::index_by(Place& place, const Scalar& index, std::size_t cells) {
     return keep_parts(place, std::size_t(*known) * cells, cells);
   place.index = values_.sets.join(place.index, index.on);
   place.index_numbers.push_back(index.number);
-  // Elements of what has been swizzled do not lie at equal distances.
+  // Elements of a swizzled value are not equidistant.
   std::vector<std::vector<std::uint32_t>> choices;
   for (std::size_t element = 0; element < elements; ++element) {
     const auto first = place.parts.begin() + std::ptrdiff_t(element * cells);
@@ -92,7 +92,7 @@ void Walk::index_by(Place& place, const Scalar& index, std::size_t cells) {
   place.parts = choices[0];
 }
 
-/// It may as well be `other`.
+/// Makes `other` an alternative location of `place`.
 void Walk::add_choice(Place& place, const Place& other) {
   if (place.starts == other.starts && place.index_numbers == other.index_numbers) return;
   if (place.parts != other.parts) throw NotFollowed{"an index that changes while it is used"};
@@ -138,7 +138,7 @@ void Walk::write(const Place& place, const Value& value, int line) {
   }
 }
 
-/// An index decides whether this is the element that is written.
+/// Writes to an element that an index may or may not select.
 void Walk::write_perhaps(const Place& place, std::uint32_t start, Scalar& cell, const Scalar& given) {
   std::vector<Number> numbers = place.index_numbers;
   numbers.insert(numbers.end(), {start, cell.number, given.number});

@@ -9,7 +9,7 @@
 namespace understudy::spu::program {
 namespace {
 
-/// The same for all fragments of a draw, or nothing that a viewer can mean.
+/// Returns whether the source is the same for all fragments of a draw, or undefined, on which no viewer relies.
 bool is_fixed_for_rays(SourceKind kind) {
   return kind == SourceKind::uniform || kind == SourceKind::uniform_block || kind == SourceKind::texture_size ||
          kind == SourceKind::undefined;
@@ -32,7 +32,7 @@ std::vector<Influence>& list_for(const Influence& influence, SourceKind kind, Ra
   return of_samples(kind) ? finding.guards : finding.branches;
 }
 
-/// Texels as data are what is shown.
+/// Returns whether an influence is listed: texels that reach colours as data are what is to be shown.
 bool counts(SourceKind kind, const Influence& influence) {
   if (is_fixed_for_rays(kind)) return false;
   const bool shown = influence.target == Target::colour && influence.flow == Flow::data;
@@ -49,7 +49,8 @@ void sort_fetches(const StageFacts& facts, const std::vector<std::size_t>& fetch
   }
 }
 
-/// Whether all fragments run through a loop equally often, whatever they have gathered: one over the axes.
+/// Returns whether all fragments run through a loop equally often, whatever they have accumulated: one over the
+/// axes.
 bool runs_equally_often(const StageFacts& facts, std::size_t loop) {
   return std::ranges::all_of(facts.loops[loop].condition, [&](const Dependence& on) {
     const Source& source = facts.sources[on.source];
@@ -57,15 +58,15 @@ bool runs_equally_often(const StageFacts& facts, std::size_t loop) {
   });
 }
 
-/// Whether all that reaches the fetch's coordinate is texels of the volume, by way of other tables perhaps, and
-/// what is the same for the whole draw.
+/// Returns whether only texels of the volume, possibly through other tables, and what is the same for the whole
+/// draw reach the fetch's coordinate.
 bool is_addressed_by_samples(const StageFacts& facts, const Fetch& fetch, std::span<const std::string> volumes,
                              int tables_deep = 0) {
   constexpr int most_tables_deep = 4;
   if (tables_deep > most_tables_deep) return false;
   const auto allowed = [&](const Dependence& on) {
     const Source& source = facts.sources[on.source];
-    // A gradient may be taken axis by axis.
+    // A gradient may be computed axis by axis.
     if (source.kind == SourceKind::iteration)
       return facts.loops[source.number].outer && runs_equally_often(facts, source.number);
     if (source.kind != SourceKind::texel) return is_fixed_for_rays(source.kind);
@@ -89,7 +90,7 @@ std::vector<std::string> tables_of_samples(const StageFacts& facts, const std::s
   return found;
 }
 
-/// Adds the places of the volume's texels that reach the fetch's coordinate, by way of other tables perhaps.
+/// Adds the places of the volume's texels that reach the fetch's coordinate, possibly through other tables.
 void add_places(const StageFacts& facts, const Fetch& fetch, std::span<const std::string> volumes,
                 std::set<std::uint32_t>& places) {
   const auto add = [&](const Dependence& on) {
@@ -105,7 +106,7 @@ void add_places(const StageFacts& facts, const Fetch& fetch, std::span<const std
   for (const Dependences& component : fetch.coordinate) std::ranges::for_each(component, add);
 }
 
-/// Of the texels that reach what is looked up in `table`.
+/// Returns the places of the texels that reach what is looked up in `table`.
 std::set<std::uint32_t> places_that_address(const StageFacts& facts, const std::string& table,
                                             std::span<const std::string> volumes) {
   std::set<std::uint32_t> places;
@@ -115,7 +116,7 @@ std::set<std::uint32_t> places_that_address(const StageFacts& facts, const std::
   return places;
 }
 
-/// Of `finding.tables_of_samples`, by the texels that reach them.
+/// Sorts `finding.tables_of_samples` by the texels that reach them.
 void sort_tables(const StageFacts& facts, std::span<const std::string> volumes, RayFinding& finding) {
   std::set<std::uint32_t> samples;
   for (const std::string& table : finding.tables_of_samples) {
@@ -124,7 +125,7 @@ void sort_tables(const StageFacts& facts, std::span<const std::string> volumes, 
     finding.tables_of_one_texel.push_back(table);
     samples.insert(places.begin(), places.end());
   }
-  // Without a table of samples there is no telling which texel is the sample.
+  // Without a table of samples, it is unknown which texel is the sample.
   if (samples.empty()) return;
   for (const std::string& table : finding.tables_of_samples) {
     const std::set<std::uint32_t> places = places_that_address(facts, table, volumes);
@@ -155,7 +156,7 @@ std::vector<std::string> reasons_of(const StageFacts& facts, const RayFinding& f
   return reasons;
 }
 
-/// The loop in one iteration of which all these fetches are executed; null: there is none.
+/// Returns the loop in one iteration of which all these fetches are executed; null: none.
 std::optional<std::size_t> common_loop(const StageFacts& facts, std::span<const std::size_t> fetches) {
   const auto is_around_all = [&](std::size_t loop) {
     return std::ranges::all_of(fetches, [&](std::size_t fetch) {
@@ -169,8 +170,8 @@ std::optional<std::size_t> common_loop(const StageFacts& facts, std::span<const 
   return std::nullopt;
 }
 
-/// What of a fetch's coordinate is neither the same for the whole draw nor counted by a loop within `around`,
-/// component by component.
+/// Returns, for each component of a fetch's coordinate, the sources that are neither the same for the whole
+/// draw nor counted by a loop within `around`.
 std::vector<std::set<std::uint32_t>> varying_places(const StageFacts& facts, const Fetch& fetch,
                                                     std::size_t around) {
   const auto is_counted = [&](const Source& source) {
@@ -189,7 +190,8 @@ std::vector<std::set<std::uint32_t>> varying_places(const StageFacts& facts, con
   return places;
 }
 
-/// Whether the size of a texture decides where the fetch lies: its own, or another's.
+/// Returns whether the coordinate of the fetch depends on the size of its own texture, or, unless `own`, of
+/// another.
 bool depends_on_size(const StageFacts& facts, const Fetch& fetch, bool own) {
   return std::ranges::any_of(fetch.coordinate, [&](const Dependences& component) {
     return std::ranges::any_of(component, [&](const Dependence& on) {
@@ -199,7 +201,7 @@ bool depends_on_size(const StageFacts& facts, const Fetch& fetch, bool own) {
   });
 }
 
-/// Whether nothing but its coordinate tells a fetch from another one.
+/// Returns whether a fetch differs from others by its coordinate only.
 bool is_plain(const StageFacts& facts, const Fetch& fetch) {
   const bool fixed = std::ranges::all_of(
       fetch.modifiers, [&](const Dependence& on) { return is_fixed_for_rays(facts.sources[on.source].kind); });
@@ -231,7 +233,7 @@ std::optional<NeighbourDistance> neighbour_distance(const StageFacts& fragment,
     return fetch.offset || depends_on_size(fragment, fetch, true);
   });
   if (by_texels == 0) return NeighbourDistance::in_texture_space;
-  // All but the point itself: distances of both kinds would change differently from texture to texture.
+  // All but the point itself: distances in both units would change differently from texture to texture.
   if (std::size_t(by_texels) + 1 == fetches.size()) return NeighbourDistance::in_texels;
   return std::nullopt;
 }

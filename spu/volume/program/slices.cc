@@ -7,7 +7,7 @@
 namespace understudy::spu::program {
 namespace {
 
-/// The same for all fragments of a draw, or nothing that a viewer can mean.
+/// Returns whether the source is the same for all fragments of a draw, or undefined, on which no viewer relies.
 bool is_fixed(SourceKind kind) {
   return kind == SourceKind::uniform || kind == SourceKind::uniform_block || kind == SourceKind::texture_size ||
          kind == SourceKind::iteration || kind == SourceKind::undefined;
@@ -42,7 +42,7 @@ void sort_out(const StageFacts& facts, const Influence& influence, SliceFinding&
   }
 }
 
-/// Of the fetches that read one texel the first is kept.
+/// Keeps the first of the fetches that read one texel.
 std::vector<std::size_t> different(const StageFacts& facts, const std::vector<std::size_t>& fetches) {
   std::vector<std::size_t> kept;
   std::set<std::uint32_t> places;

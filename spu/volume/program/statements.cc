@@ -10,10 +10,10 @@ using namespace glslang;
 
 namespace {
 
-/// A hundred times what the longest shader takes that was met.
+/// A hundred times what the longest shader met so far takes.
 constexpr std::size_t max_steps = 200'000;
 
-/// Places of one node at which ways meet.
+/// Points of one node at which paths join.
 enum StatementMeeting : std::uint32_t { at_end, at_break, at_case };
 
 }  // namespace
@@ -80,7 +80,7 @@ void Walk::execute_branch(const TIntermBranch& branch) {
   }
 }
 
-/// Nothing that follows needs to know of it: a fragment that is discarded leaves nothing.
+/// What follows does not depend on a discard: a discarded fragment leaves nothing.
 void Walk::execute_discard(const TIntermBranch& branch) {
   FoundDiscard& found = discards_[point(branch, at_end)];
   found.line = branch.getLoc().line;
@@ -102,7 +102,7 @@ void Walk::execute_return(const TIntermBranch& branch) {
   state_.reachable = false;
 }
 
-/// Later iterations are executed only where this way was not taken.
+/// Later iterations are executed only if this path was not taken.
 void Walk::end_way(Target& target) {
   target.lasting = values_.sets.join(target.lasting, conditions_in_loop());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers for values: what has the same number is the same value, whatever the inputs are (value numbering;
-// Alpern, Wegman and Zadeck 1988). By them two fetches are known to read one texel, and a branch that changes
-// nothing to change nothing.
+// Value numbering: values with the same number are equal, whatever the inputs are (Alpern, Wegman and Zadeck
+// 1988). Value numbers show that two fetches read one texel, and that a branch which changes nothing has no
+// influence.
 #pragma once
 
 #include <array>
@@ -18,22 +18,22 @@ class ValueNumbers {
  public:
   using Number = std::uint32_t;
 
-  /// The first `leaves` numbers stand for values that come from outside.
+  /// The first `leaves` numbers are values that come from outside.
   explicit ValueNumbers(std::uint32_t leaves) : leaves_(leaves) {}
 
-  /// Operators of the front end are below these.
+  /// Operators of the front end have smaller numbers.
   enum Operator : std::uint32_t {
     constant = 1U << 20U,
     component,  ///< of a result whose components need all operands
     select,     ///< one of several values, by a condition
-    merged,     ///< where ways through the program meet
-    head,       ///< at the head of a loop, in the iteration at hand
+    merged,     ///< where paths through the program join
+    head,       ///< at the head of a loop, in the current iteration
     path,       ///< a chain of calls
     place,      ///< of a texel
     distinct,   ///< differs from all others
   };
 
-  /// The value of `op` applied to `operands`; no other pair of them has its number.
+  /// Returns the number of `op` applied to `operands`, which no other operator or operands have.
   Number of(std::uint32_t op, std::span<const Number> operands);
   Number of(std::uint32_t op, std::initializer_list<Number> operands) {
     return of(op, std::span(operands.begin(), operands.size()));
@@ -50,7 +50,7 @@ class ValueNumbers {
   std::vector<std::uint32_t> first_term_;  ///< by number, less leaves_
 };
 
-/// A pointer or any other 64 bits as operands.
+/// Splits a pointer, or any other 64 bits, into two operands.
 inline std::array<std::uint32_t, 2> halves(std::uint64_t bits) {
   return {std::uint32_t(bits >> 32U), std::uint32_t(bits)};
 }

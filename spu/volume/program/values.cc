@@ -10,17 +10,17 @@
 namespace understudy::spu::program {
 namespace {
 
-/// Integers and floats are told apart: 1 / 2 is not 1.0 / 2.0.
+/// Distinguishes integers from floats: 1 / 2 is not 1.0 / 2.0.
 constexpr std::uint32_t of_exact = 1U << 24U;
 
-/// So many sets are joined at once: pairs of few are found again.
+/// More sets than this are joined at once; unions of fewer are computed pair by pair, and found again.
 constexpr std::size_t many = 16;
 
 Scalar component_of(const Value& operand, std::size_t i) {
   return operand[operand.size() == 1 ? 0 : std::min(i, operand.size() - 1)];
 }
 
-/// Comparisons and logic decide branches; integers are indices.
+/// Comparisons and logic decide branches, and integers are indices: more need not be folded.
 std::optional<double> folded_numbers(std::uint32_t op, double a, double b) {
   switch (op) {
     case glslang::EOpNegative:

@@ -12,10 +12,10 @@ using glslang::TType;
 
 constexpr std::uint32_t max_cells_of_variable = 2048;
 constexpr std::uint64_t max_cells = 100'000;
-/// Nodes within nodes: the walk calls itself for every level.
+/// Limit of nested nodes: the walk recurses for every level.
 constexpr int max_depth = 1000;
 
-/// Unsized arrays have as many elements as the text names.
+/// Unsized arrays have as many elements as the source uses.
 std::uint32_t elements_of(const TType& array, int dimension) {
   const glslang::TArraySizes& sizes = *array.getArraySizes();
   const unsigned size = unsigned(sizes.getDimSize(dimension));
@@ -113,7 +113,7 @@ bool begins_anew(const Variable& variable) {
   }
 }
 
-/// Walks down a type to the scalar, vector or matrix in which a cell lies.
+/// Descends a type to the scalar, vector or matrix that contains a cell.
 class LeafName {
  public:
   LeafName(const Variable& variable, std::uint32_t offset) : collapsed_(variable.collapsed), offset_(offset) {
@@ -287,7 +287,7 @@ Source Variables::source_of(Cell cell) const {
             .component = int(cell - fixed_vertex_),
             .components = 4,
             .rows = 4};
-  // Variables lie in the order of the list; behind them the returned values.
+  // Variables are in the order of the list, followed by the returned values.
   const auto after = std::ranges::upper_bound(list_, cell, {}, &Variable::first);
   if (after == list_.begin()) return {.kind = SourceKind::undefined, .name = "a returned value"};
   auto variable = std::prev(after);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the variables of a shader lie: every number that one holds is a cell.
+// The layout of a shader's variables: each scalar of a variable has a cell.
 #pragma once
 
 #include <glslang/Include/intermediate.h>
@@ -19,11 +19,11 @@ namespace understudy::spu::program {
 
 using Cell = std::uint32_t;
 
-/// How many numbers a value of this type is.
+/// Returns the number of scalars in a value of this type.
 std::uint32_t cells_of(const glslang::TType& type);
-/// Of one element of an array.
+/// The same for one element of an array.
 std::uint32_t cells_of_element(const glslang::TType& array);
-/// Where a member begins.
+/// Returns the number of cells before a member.
 std::uint32_t cells_before_member(const glslang::TType& structure, std::size_t member);
 
 struct Variable {
@@ -32,13 +32,13 @@ struct Variable {
   glslang::TStorageQualifier storage = glslang::EvqTemporary;
   Cell first = 0;
   std::uint32_t cells = 0;
-  std::uint32_t elements = 1;  ///< of an array, its outermost dimension, as far as it is kept apart
+  std::uint32_t elements = 1;  ///< of an array's outermost dimension; 1 if collapsed
   bool collapsed = false;      ///< all elements share the cells of one
 };
 
 struct Function {
   const glslang::TIntermAggregate* node = nullptr;
-  std::vector<std::size_t> locals;  ///< variables, with parameters
+  std::vector<std::size_t> locals;  ///< variables, including parameters
   Cell returned = 0;                ///< first cell of the returned value
   std::uint32_t returned_cells = 0;
 };
@@ -51,15 +51,16 @@ class Variables {
 
   const Variable& of(const glslang::TIntermSymbol& symbol) const { return list_[by_id_.at(symbol.getId())]; }
   std::span<const Variable> list() const { return list_; }
-  /// Whether the variable begins anew with every call of the function.
+  /// Returns whether the variable is new in every call of the function.
   bool is_local(const glslang::TIntermSymbol& symbol, const Function& function) const;
-  /// By the front end's name, which holds the parameters' types; null for functions without a core.
+  /// Finds a function by the front end's name, which contains the parameter types; null for functions without a
+  /// body.
   const Function* function(std::string_view name) const;
   std::uint32_t cells() const { return cells_; }
-  /// What is in a cell when the shader starts.
+  /// Returns what a cell contains when the shader starts.
   Source source_of(Cell cell) const;
 
-  /// What ftransform reads.
+  /// Cells that ftransform reads.
   Cell fixed_vertex() const { return fixed_vertex_; }
   Cell fixed_matrix() const { return fixed_matrix_; }
 
@@ -79,9 +80,10 @@ class Variables {
   std::uint32_t cells_ = 0;
 };
 
-/// The stage's outputs lie in variables of these qualifiers.
+/// Returns whether the variable is an output of the stage.
 bool is_output(const Variable& variable);
-/// Of a cell of `variable`: the name of the scalar, vector or matrix that it is in, and its component.
+/// Returns the name of the scalar, vector or matrix of `variable` that contains a cell, and the cell's
+/// component.
 Source named(const Variable& variable, Cell cell);
 
 }  // namespace understudy::spu::program

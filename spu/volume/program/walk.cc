@@ -38,7 +38,7 @@ StageFacts Walk::facts(const TIntermNode& root, int version) {
   return export_facts(version);
 }
 
-/// Variables outside functions get their values before main begins.
+/// Global variables get their values before main begins.
 void Walk::walk_globals(const TIntermAggregate& root) {
   Exit nowhere;
   returns_.push_back(&nowhere);

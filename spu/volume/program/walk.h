@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Follows values through the tree of one shader stage: abstract interpretation, where a value is the set of
-// what it can depend on and a number that equal values share. Calls are followed into the functions, loops
-// until nothing new is found.
+// Follows values through the syntax tree of one shader stage (abstract interpretation): a value is the set of
+// sources that it can depend on, and a number that equal values share. Calls are followed into the functions,
+// and loops until nothing new is found.
 #pragma once
 
 #include <glslang/Include/intermediate.h>
@@ -22,26 +22,26 @@
 
 namespace understudy::spu::program {
 
-/// What all cells hold at one point of the program.
+/// The contents of all cells at one point of the program.
 struct State {
   std::vector<Scalar> cells;
   bool reachable = true;
 };
 
-/// Where an expression that can be assigned to lies.
+/// The location of an expression that can be assigned to.
 struct Place {
   const Variable* variable = nullptr;
-  std::vector<std::uint32_t> starts;  ///< several where an index decides
-  std::vector<std::uint32_t> parts;   ///< behind each start, component by component
+  std::vector<std::uint32_t> starts;  ///< several if an index decides
+  std::vector<std::uint32_t> parts;   ///< offsets from each start, component by component
   FlowSets::Set index = FlowSets::empty;
   std::vector<ValueNumbers::Number> index_numbers;
-  bool shared = false;  ///< its cells stand for several variables
+  bool shared = false;  ///< all elements of the variable share its cells
 };
 
 /// The shader has no main function.
 struct NoMain {};
 
-/// What the analysis does not follow, and cannot take for anything.
+/// Thrown for what the analysis neither follows nor can treat as unknown.
 struct NotFollowed {
   std::string what;
 };
@@ -50,10 +50,10 @@ class Walk {
  public:
   Walk(Stage stage, const Variables& variables);
 
-  /// A component of a uniform is this number.
+  /// Treats a component of a uniform as this constant.
   void assume(std::string_view name, int component, double value);
 
-  /// Follows the whole shader stage. Throws TooLarge.
+  /// Follows the whole shader stage. Throws TooLarge, NoMain or NotFollowed.
   StageFacts facts(const TIntermNode& root, int version);
 
  private:
@@ -61,30 +61,30 @@ class Walk {
   using Set = FlowSets::Set;
   using Number = ValueNumbers::Number;
 
-  /// Ways that leave a region early, met where it ends.
+  /// Paths that leave a region early, joined where it ends.
   struct Exit {
     State state{.cells = {}, .reachable = false};
     Set decided_by = FlowSets::empty;
   };
 
-  /// What `break` and `continue` leave: a loop, or a switch.
+  /// A loop or switch, which `break` and `continue` leave.
   struct Target {
     bool loop = false;
-    Exit left;                      ///< by break, or because the loop's condition ended it
+    Exit left;                      ///< by break, or by the loop's condition
     Exit next;                      ///< by continue
     Exit returned;                  ///< from the function, out of the loop
-    Set ends_by = FlowSets::empty;  ///< what decides that the loop ends
-    Set lasting = FlowSets::empty;  ///< ends_by, as later iterations see it
+    Set ends_by = FlowSets::empty;  ///< what decides when the loop ends
+    Set lasting = FlowSets::empty;  ///< ends_by, as far as it affects later iterations
     std::size_t number = 0;         ///< of the loop
   };
 
-  /// Conditions that decide whether what is walked over is executed.
+  /// Conditions that decide whether the current statement is executed.
   struct Conditions {
-    Set outside = FlowSets::empty;        ///< of the calls
+    Set outside = FlowSets::empty;        ///< around the calls that led here
     Set around = FlowSets::empty;         ///< in this function, around the innermost loop
-    Set passed_around = FlowSets::empty;  ///< early exits passed on the way to that loop
+    Set passed_around = FlowSets::empty;  ///< early exits passed before that loop
     Set branches = FlowSets::empty;       ///< around this statement, within the innermost loop
-    Set passed = FlowSets::empty;         ///< early exits passed on the way here
+    Set passed = FlowSets::empty;         ///< early exits passed before this statement
   };
 
   struct FoundFetch {
@@ -94,7 +94,7 @@ class Walk {
     Set modifiers = FlowSets::empty;
     Set execution = FlowSets::empty;
     Number place = 0;
-    std::uint32_t first_source = 0;  ///< of four
+    std::uint32_t first_source = 0;  ///< the first of four
   };
 
   struct FoundLoop {
@@ -120,7 +120,7 @@ class Walk {
   void execute_continue(const glslang::TIntermBranch& branch);
   void leave_target(const glslang::TIntermBranch& branch, Target& target);
   void end_way(Target& target);
-  /// Walks over both ways, or over one where the condition is known.
+  /// Follows both branches, or only one if the condition is known.
   void either(const Scalar& condition, const TIntermNode& at, const std::function<void()>& when_true,
               const std::function<void()>& when_false);
 
@@ -135,10 +135,10 @@ class Walk {
   std::size_t loop_number(const glslang::TIntermLoop& loop);
 
   // joins.cc
-  /// `state` becomes what is known where it and `other` meet; `decided_by` says which of them it is.
+  /// Joins `other` into `state`; `decided_by` is what decides between the two.
   void meet(State& state, const State& other, Set decided_by, Number point);
   void add_exit(Exit& exit, const State& state, Set decided_by, Number point);
-  /// For one chain of calls, a node and one of its meetings.
+  /// Identifies a node and one of its joins within one chain of calls.
   Number point(const TIntermNode& node, std::uint32_t which);
   Set conditions();
   Set parting();
@@ -212,7 +212,7 @@ class Walk {
   Value change_atomically(const glslang::TIntermOperator& node, const std::vector<Value>& arguments,
                           SideEffectKind kind, std::string name);
   Value change_buffer_atomically(const glslang::TIntermAggregate& node, const std::vector<Value>& arguments);
-  /// Of a sampler or an image.
+  /// Returns the name of a sampler or an image.
   std::string name_of(const Scalar& opaque);
   Scalar without_name(Scalar sampler) const;
   void add_side_effect(SideEffectKind kind, std::string name, int line);
@@ -237,13 +237,13 @@ class Walk {
   State emitted_{.cells = {}, .reachable = false};  ///< of a geometry stage
   Conditions conditions_;
   std::vector<Target*> targets_;  ///< of this function
-  std::vector<Exit*> returns_;    ///< of the functions being called
+  std::vector<Exit*> returns_;    ///< of the active calls
   std::vector<const Function*> functions_;
   std::optional<std::size_t> loop_;  ///< the innermost, in this function or its callers
   Number path_;
   std::size_t steps_ = 0;
 
-  std::vector<Source> own_sources_;  ///< behind those of the variables
+  std::vector<Source> own_sources_;  ///< numbered after those of the variables
   std::map<std::pair<SourceKind, std::string>, std::uint32_t> own_source_by_name_;
   std::unordered_map<Number, std::size_t> fetch_by_path_;
   std::vector<FoundFetch> fetches_;

@@ -20,14 +20,14 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Texels of idle samplers end the way as the volume's do: nothing reaches colours through them.
+/// Texels of idle samplers end a path as the volume's do: nothing reaches colours through them.
 std::vector<std::string> ends_of_ways(const SamplerRoles& roles) {
   std::vector<std::string> names = roles.volume;
   names.insert(names.end(), roles.idle.begin(), roles.idle.end());
   return names;
 }
 
-/// Tables whose contents are tracked (spu/track) and can be given to a probe.
+/// Tables whose contents are tracked (spu/track), and that a probe can sample.
 bool is_known_table(const program::SamplerType& type) {
   using program::TextureShape;
   return !type.array && !type.shadow && !type.multisample &&
@@ -58,7 +58,7 @@ const StageInput* input_of(const ProgramStages& stages, const std::string& name)
   return found == stages.inputs.end() ? nullptr : &*found;
 }
 
-/// The same for all fragments of the run, or measured as fog.
+/// Returns whether the influence is the same for all fragments of the run, or measured as fog.
 bool is_measured(const ProgramStages& stages, const FragmentInputs& fragment, const Influence& influence,
                  const Source& source) {
   const StageInput* const input = input_of(stages, source.name);
@@ -67,12 +67,12 @@ bool is_measured(const ProgramStages& stages, const FragmentInputs& fragment, co
   if (index >= fragment.range.low.size()) return false;
   const auto component = std::size_t(source.component);
   if (fragment.range.low[index][component] == fragment.range.high[index][component]) return true;
-  // A fade that is decided by a number (PyMOL's fog) is measured as one that is computed from it.
+  // A fade that branches on a scalar (PyMOL's fog) is measured like one that is computed from it.
   return influence.target == program::Target::colour && !influence.through_table;
 }
 
-/// Light and gradients take several texels in one iteration. Two loops one after the other do not: vispy's
-/// second one looks for the maximum more closely.
+/// Lighting and gradients use several texels in one iteration. Two consecutive loops do not: vispy's second one
+/// refines the maximum.
 bool mixes_samples(const StageFacts& facts, const program::RayFinding& finding, const SamplerRoles& roles) {
   std::vector<std::size_t> loops;
   return std::ranges::any_of(finding.samples, [&](std::size_t index) {
@@ -86,7 +86,7 @@ bool mixes_samples(const StageFacts& facts, const program::RayFinding& finding, 
   });
 }
 
-/// The fetches of the volume that samples are made of.
+/// Returns the fetches of the volume that samples are computed from.
 std::vector<std::size_t> fetches_of_samples(const program::RayFinding& finding, const StageFacts& facts,
                                             const SamplerRoles& roles) {
   std::vector<std::size_t> fetches;
@@ -192,7 +192,7 @@ std::optional<Refusal> refusal_of_ray_caster(const ProgramFindings& findings) {
     if (!neighbours_of_gradients(findings))
       return "the fragment shader: a sample's colour depends on several texels of the volume (gradient, "
              "lighting)";
-    // Light comes from somewhere: what it shows of slopes is measured on several rays.
+    // Lighting depends on a direction: its effect on slopes is measured on several rays.
     std::erase_if(unexplained, [&](const Influence& influence) {
       return facts.sources[influence.source].kind == SourceKind::varying;
     });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the text of a program must say for its volume to be substituted. Measuring finds what colours are for
-// the values that were tried; the text says on what else they can depend (spu/volume/program).
+// What a program's source must guarantee for its volume to be substituted. Measuring gives the colours for the
+// values that were tried; the source determines what else they can depend on (spu/volume/program).
 #pragma once
 
 #include <optional>
@@ -19,18 +19,18 @@
 
 namespace understudy::spu {
 
-/// The names that the program has for textures.
+/// The names of the program's samplers, by role.
 struct SamplerRoles {
   std::vector<std::string> volume;  ///< set to the volume's texture
-  std::vector<std::string> idle;    ///< set to a unit without a texture: they give the same everywhere
+  std::vector<std::string> idle;    ///< set to a unit without a texture: they return one value everywhere
   bool operator==(const SamplerRoles&) const = default;
 };
 
-/// What a program was drawn for.
+/// What a program draws.
 enum class Subject : std::uint8_t { slices, ray_caster };
 
-/// What the text says about the volume, for one choice of roles and as long as the uniforms that choose between
-/// branches keep their values. Of the two findings there are those that were asked for.
+/// What the source implies for the volume, for one assignment of roles and as long as the uniforms that choose
+/// between branches keep their values. Only those of the two findings are set that were requested.
 struct ProgramFindings {
   program::StageFacts facts;
   SamplerRoles roles;
@@ -38,18 +38,18 @@ struct ProgramFindings {
   std::optional<program::RayFinding> ray{};
 };
 
-/// The findings of one link of a program. Each takes about as long as a few draws, and is kept.
+/// The findings about one link of a program. Each takes about as long as a few draws, and is kept.
 class ProgramText {
  public:
-  /// With the finding about `subject`. `extensions` are the driver's, which decide what `#ifdef` compiles.
-  /// Null, with the reason in trouble(), where the text is not understood.
+  /// Returns the findings, with that about `subject`. `extensions` are the driver's, which decide what `#ifdef`
+  /// compiles. Null, with the reason in trouble(), if the source cannot be analysed.
   const ProgramFindings* findings(std::span<const std::string> fragment_sources,
                                   std::span<const std::string> extensions, const SamplerRoles& roles,
                                   std::span<const UniformValue> values, Subject subject);
   const std::string& trouble() const { return trouble_; }
 
  private:
-  /// Later values of uniforms that change all the time are not told to the analysis.
+  /// After this many analyses, uniforms are no longer assumed to be constant: some change all the time.
   static constexpr int most_readings = 16;
 
   bool holds(const SamplerRoles& roles, const std::vector<program::KnownUniform>& known) const;
@@ -63,32 +63,33 @@ class ProgramText {
 SamplerRoles sampler_roles(const DispatchTable& gl, const Pipeline& pipeline,
                            const std::vector<SamplerUniform>& samplers);
 
-/// Why slices may not be substituted, with the variable's name; null: they may. What colours depend on besides
-/// one texel must be one of the things that probing measures: one number that fades colours (fog), or a second
-/// texel that `slice_segments` explain. `coordinate` names the input that addresses the volume.
+/// Returns why slices may not be substituted, with the variable's name; null: they may. Besides one texel,
+/// colours may depend only on what probing measures: one scalar that fades them (fog), or a second texel that
+/// `slice_segments` explain. `fragment.coordinate` names the input that addresses the volume.
 std::optional<Refusal> refusal_of_slices(const ProgramStages& stages, const ProgramFindings& findings,
                                          const FragmentInputs& fragment, bool slice_segments);
 
-/// Why a ray caster may not be; null: it may. Refused is what no measurement would show: colours from the
-/// pixel's position or from time (RayFinding::data), several texels in one sample (light, gradients), tables
-/// that are not followed, and side effects. Branches, discards, guards and ends of loops by position are no
-/// refusal: every ray caster ends its loop by where the ray is, leaves pixels out that its box does not cover,
-/// and stops where opacity is reached, so that the text cannot tell these from a clipping mask. What they do is
-/// measured (counts of samples, planes, noise: spu/volume/proxy), and what measuring does not explain shows in
-/// the comparison of the first image and in sentinels (spu/volume/verification).
+/// Returns why a ray caster may not be substituted; null: it may. Refuses what no measurement would show:
+/// colours from the pixel's position or from time (RayFinding::data), several texels in one sample unless they
+/// form a gradient, tables whose contents are not tracked, and side effects. Branches, discards, guards and
+/// ends of loops by position are not refused: every ray caster ends its loop depending on the ray's position,
+/// discards pixels outside of its box, and stops when it is opaque, so the source does not distinguish these
+/// from a clipping mask. Their effect is measured (numbers of samples, planes, noise: spu/volume/proxy), and
+/// what measuring does not explain shows in the comparison of the first image and in sentinels
+/// (spu/volume/verification).
 std::optional<Refusal> refusal_of_ray_caster(const ProgramFindings& findings);
 
-/// How far away the neighbours are where a ray caster's samples are made of a texel and its neighbours at
-/// constant distances, and tables are addressed by one of them, or by the neighbours alone: central
-/// differences, which light and gradient opacity need. Null: they are not.
+/// Returns the distance of the neighbours if a ray caster's samples are computed from a texel and its
+/// neighbours at constant distances, and tables are addressed by one of them, or by the neighbours alone:
+/// central differences, which lighting and gradient opacity need. Null otherwise.
 std::optional<program::NeighbourDistance> neighbours_of_gradients(const ProgramFindings& findings);
 
-/// Whether where a ray caster takes a sample depends on texels that it met before, as where it takes longer
-/// steps through what is transparent: other tables may then move samples.
+/// Returns whether the positions of a ray caster's samples depend on earlier texels, as with longer steps
+/// through what is transparent: other tables may then move samples.
 bool samples_move_samples(const ProgramFindings& findings);
 
-/// Uniforms of slices as inputs of a comparison: what a change of those does that decide about fragments or
-/// move samples is unknown.
+/// Returns the uniforms of slices as inputs of a comparison: the effect of a change is unknown for those that
+/// decide about fragments or move samples.
 VerificationSchedule::Inputs uniform_inputs(const ProgramFindings& findings,
                                             std::span<const UniformValue> values);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The application's programs as the volume unit knows them, each read once a link: taken apart for measuring,
-// and its text for what the colours can depend on.
+// The application's programs, each read once per link: taken apart for measuring, and their sources analysed
+// for what colours can depend on.
 #pragma once
 
 #include <map>
@@ -17,27 +17,27 @@ class ShareGroup;
 struct GlContext;
 struct ProgramRecord;
 
-/// Holds programs of the context it was made in, which go with that.
+/// Owns programs of the context in which it was created, which are deleted with the context.
 class ProgramReader {
  public:
   ProgramReader(const GlContext& context, ShareGroup& group, ProgramSamplers& samplers)
       : context_(context), group_(group), samplers_(samplers) {}
 
-  /// The stages of `program`, whose record is `record`.
+  /// Returns the stages of `program`, whose record is `record`.
   const ProgramStages& stages(GLuint program, const ProgramRecord& record);
-  /// The stages of a program that is known to the share group.
+  /// Returns the stages of a program that is known to the share group.
   const ProgramStages& stages(GLuint program);
 
-  /// What the text of the pipeline's program says about its `subject` while uniforms have these values. Throws
-  /// Refusal where it is not understood.
+  /// Returns what the source of the pipeline's program implies for `subject` while uniforms have these values.
+  /// Throws Refusal if it cannot be analysed.
   const ProgramFindings& findings(const Pipeline& pipeline, std::span<const UniformValue> values,
                                   Subject subject);
 
-  /// The programs are gone with their context.
+  /// Forgets the programs, which are gone with their context.
   void forget() { stages_.clear(); }
 
  private:
-  /// With the link that it stems from.
+  /// With the link that it belongs to.
   template <class Known>
   using ByProgram = std::map<GLuint, std::pair<std::uint64_t, Known>>;
 

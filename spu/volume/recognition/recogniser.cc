@@ -27,7 +27,7 @@ volume::Matrix4 projection_matrix(const DispatchTable& gl) {
   return matrix;
 }
 
-/// The row vector `plane` times `matrix`: how plane equations travel against points.
+/// Returns the row vector `plane` times `matrix`: plane equations are transformed inversely to points.
 std::array<double, 4> plane_times(const std::array<double, 4>& plane, const volume::Matrix4& matrix) {
   std::array<double, 4> result{};
   for (std::size_t column = 0; column < 4; ++column) {
@@ -36,7 +36,7 @@ std::array<double, 4> plane_times(const std::array<double, 4>& plane, const volu
   return result;
 }
 
-/// The application's user clip planes, which OpenGL keeps in eye space, carried to texture space through the
+/// Transforms the application's user clip planes, which OpenGL keeps in eye space, to texture space through the
 /// camera.
 std::vector<volume::HalfSpace> clip_planes_in_texture_space(const DispatchTable& gl,
                                                             const volume::Matrix4& texture_to_clip) {
@@ -65,7 +65,7 @@ bool clips_in_shader(const DispatchTable& gl) {
   return false;
 }
 
-/// What fixed-function fog goes by: how far vertices lie from the plane through the eye.
+/// Returns the distances of vertices from the plane through the eye, which fixed-function fog depends on.
 std::vector<float> eye_distances(const DispatchTable& gl, std::span<const ObservedVertex> vertices) {
   const auto clip_to_eye = volume::inverse(projection_matrix(gl));
   if (!clip_to_eye) throw Refusal{"the projection matrix is singular"};
@@ -77,8 +77,8 @@ std::vector<float> eye_distances(const DispatchTable& gl, std::span<const Observ
   return distances;
 }
 
-/// Gives the observed slices of a stack their third coordinate. The end whose texture has the lower name is the
-/// low one, from whichever side the stack is drawn.
+/// Gives the captured slices of a stack their third coordinate. The end whose texture has the lower name is the
+/// low end, from whichever side the stack is drawn.
 std::vector<GLuint> place_slices(const Run& run, ObservedPolygons& polygons) {
   std::vector<GLuint> textures = run.slices();
   const bool downwards = textures.front() > textures.back();
@@ -91,16 +91,18 @@ std::vector<GLuint> place_slices(const Run& run, ObservedPolygons& polygons) {
   return textures;
 }
 
-/// A ray caster's box is one draw, or each of its faces is.
+/// A ray caster's box is one draw, or one draw for each of its faces.
 bool may_be_box(const Run& run, const ProgramStages& stages) {
   constexpr std::size_t faces = 6;
   return run.draws <= faces && stages.observer != 0;
 }
 
-/// The other value of inputs that nobody tells: a colour that depends on one of them is not the sample's alone.
+/// Second value of inputs that feedback does not report: a colour that depends on them is not the sample's
+/// alone.
 constexpr std::array<float, 4> untold_value{0.75F, 0.75F, 0.75F, 1};
 
-/// What an assembly program may read besides the coordinate and the primary colour, and feedback does not tell.
+/// Inputs that an assembly program may read besides coordinate and primary colour, and that feedback does not
+/// report.
 void append_untold_inputs(std::vector<StageInput>& inputs) {
   constexpr int coordinate_sets = 8;
   for (int set = 1; set < coordinate_sets; ++set)
@@ -113,7 +115,7 @@ Refusal not_affine(const char* reason, const CameraFit& fit) {
   return {reason, fmt::format("residual {:.2g} of a fit, {:.0e} is allowed", fit.residual, max_fit_residual)};
 }
 
-/// Inputs that an assembly program may read, or a fixed-function pipeline does, as feedback tells them.
+/// Takes the inputs that an assembly program may read, or the fixed-function pipeline does, from feedback.
 void take_inputs_of_feedback(const Pipeline& pipeline, RecognisedRun& seen) {
   FragmentInputs& fragment = seen.fragment;
   fragment.coordinate = "gl_TexCoord[0]";
@@ -143,7 +145,7 @@ void take_inputs_of_feedback(const Pipeline& pipeline, RecognisedRun& seen) {
 
 SliceOrder order_of(const Pipeline& pipeline) {
   if (pipeline.blending.front_to_back != FrontToBack::no) return SliceOrder::front_to_back;
-  // Slices that write depth hide whatever comes later and lies behind them.
+  // Slices that write depth hide later ones behind them.
   const bool matters =
       pipeline.blending.op == volume::Operator::over || pipeline.blending.alpha.op == volume::Operator::over;
   return matters || (pipeline.depth_test && pipeline.depth_write) ? SliceOrder::back_to_front : SliceOrder::any;
@@ -256,7 +258,7 @@ std::uint64_t Recogniser::texture_version(const Pipeline& pipeline, const Recogn
   std::uint64_t version = group_.texture_version(pipeline.volume.texture);
   for (const GLuint texture : seen.stack) {
     if (group_.is_rendered_to(texture)) throw Refusal{"a texture of the stack is rendered into"};
-    // Any two stacks, and any two states of one, differ in the mixture.
+    // The mixture differs for any two stacks, and for any two states of one.
     constexpr std::uint64_t prime = 0x100000001b3;
     version = (version * prime) ^ texture;
     version = (version * prime) ^ group_.texture_version(texture);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The second stage: what a run of draws is. Its vertices are observed as the application's own pipeline places
-// them; a camera is fitted to them, and the slices' planes and segments are found. Cabral, Cam, Foran 1994 draw
-// such slices; Krüger and Westermann 2003 such a box.
+// The second stage: determines what a run of draws is. Its vertices are captured as the application's own
+// pipeline places them; a camera is fitted to them, and the planes and segments of slices are found. Cabral,
+// Cam, Foran 1994 draw such slices; Krüger and Westermann 2003 draw such a box.
 #pragma once
 
 #include <string>
@@ -24,11 +24,11 @@ class Recogniser {
   Recogniser(const GlContext& context, ShareGroup& group, ProgramReader& programs)
       : context_(context), group_(group), programs_(programs), given_(context) {}
 
-  /// What `run` is. `known_coordinate` names the input that addressed the volume of this ray caster before;
-  /// empty: none is known. Throws Refusal where the run is no volume that nodes can render, NothingVisible
-  /// where it draws nothing.
+  /// Recognises `run`. `known_coordinate` is the input that addressed the volume of this ray caster before;
+  /// empty: none is known. Throws Refusal if the run is not a volume that nodes can render, NothingVisible if
+  /// it draws nothing.
   RecognisedRun recognise(const Run& run, const std::string& known_coordinate);
-  /// The same as far as geometry tells; nothing is known of the texture.
+  /// The same from the geometry alone, without the texture's version.
   RecognisedRun find_geometry(const Run& run, const std::string& known_coordinate);
 
  private:

@@ -54,7 +54,7 @@ const char* name_of(const Blending& blending) {
   return "";
 }
 
-/// Where the samples lie, in words.
+/// Describes where the samples lie.
 std::string sampling_of(const volume::RenderRequest& request, const std::array<int, 3>& size, bool cut_rays) {
   if (!request.steps) {
     return fmt::format("{} slices {:.5f} of the texture apart", request.planes.count,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was recognised, in plain words, for the report.
+// Describes in words what was recognised, for the report.
 #pragma once
 
 #include <string>
@@ -10,7 +10,8 @@
 
 namespace understudy::spu {
 
-/// The volume of `texture` as `pipeline` draws it and `image` asks for it; its camera fits to `residual`.
+/// Describes the volume of `texture`, drawn by `pipeline` and requested by `image`; `residual` is that of its
+/// camera fit.
 std::string explanation(const Pipeline& pipeline, const TextureDescription& texture, const ImageRequest& image,
                         double residual);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is asked of the nodes for one run, and what their image needs besides to become the run's.
+// The request to the nodes for one run, and what is needed besides to make their image that of the run.
 #pragma once
 
 #include <optional>
@@ -15,23 +15,23 @@ struct ImageRequest {
   volume::RenderRequest request;
   VerificationSchedule::Inputs inputs;  ///< what the image depends on
 
-  // Of a ray caster.
+  // For ray casters:
   bool ray_caster = false;
   volume::Rgba
-      no_ray{};  ///< what fragments show, where they replace pixels, whose ray misses the box for rounding
-  bool replaces_pixels = false;  ///< its fragments take the place of what is there
-  /// The box covers, and is hidden in, each sample of a multisampled framebuffer's pixels by itself.
+      no_ray{};  ///< colour of fragments that replace pixels, but whose ray misses the box due to rounding
+  bool replaces_pixels = false;  ///< its fragments replace pixels
+  /// The box covers, and is hidden in, each sample of a multisampled framebuffer's pixels separately.
   bool covers_samples = false;
-  bool eye_inside = false;  ///< its box has been cut before the eye
-  /// No ray of its image has a visible sample: the program's own background, which it shows, proves nothing.
+  bool eye_inside = false;  ///< its box was clipped in front of the eye
+  /// No ray of its image has a visible sample: the program's own background in it proves nothing.
   bool background_alone = false;
-  bool unproven = false;  ///< measured for this image, and perhaps right in this view alone
-  /// What it draws into, where `request.window` is cut to where its program keeps fragments.
+  bool unproven = false;  ///< measured for this image, and perhaps valid in this view only
+  /// What it is drawn into, if `request.window` is cut to where its program keeps fragments.
   std::optional<volume::Rect> uncut_window;
-  /// Convex parts of the volume that cropping has left, nearest to the eye first; `request` asks for the first.
+  /// Convex parts of the volume that cropping has left, nearest to the eye first; `request` is for the first.
   std::vector<std::vector<volume::HalfSpace>> parts{{}};
   std::vector<volume::HalfSpace> ray_ends;  ///< planes where its rays begin and end
-  /// Of the application's opaque geometry, where the request's own depth tells ends of rays as well.
+  /// Depth of the application's opaque geometry, if the request's own depth also marks the ends of rays.
   std::optional<volume::DepthImage> opaque;
 };
 

@@ -41,7 +41,7 @@ void RequestComposer::hide_behind_geometry(const Pipeline& pipeline, volume::Ren
   request.depth = read_depth(context_, pipeline.target, volume::footprint(request, request.region),
                              pipeline.depth_or_equal);
   if (!request.depth) return;
-  // A scene without opaque geometry sends none.
+  // If there is no opaque geometry, no depth is sent.
   const std::uint64_t bytes = sizeof(float) * request.depth->depth.size();
   const bool absent =
       hides_nothing(*request.depth) && !session_.disabled_optimizations(Optimization::absent_depth);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stage that puts a request together: camera, samples, colours, window, and what hides the volume.
+// The stage that composes a request: camera, samples, colours, window, and what hides the volume.
 #pragma once
 
 #include "spu/volume/geometry/fit.h"
@@ -19,12 +19,12 @@ class RequestComposer {
   RequestComposer(const GlContext& context, RenderSession& session, FrameAccount& account)
       : context_(context), session_(session), account_(account) {}
 
-  /// A request for the part `region` of `volume`, as `pipeline` draws it into the context's viewport; samples
-  /// and colours are for the caller to fill in.
+  /// Returns a request for the part `region` of `volume`, as `pipeline` draws it into the context's viewport;
+  /// the caller fills in samples and colours.
   volume::RenderRequest compose(const Pipeline& pipeline, const CameraFit& camera, const volume::Box& region,
                                 const volume::VolumeDescription& volume, volume::Filter filter) const;
 
-  /// Gives it the depth of the application's opaque geometry, if the pipeline is hidden by that.
+  /// Adds the depth of the application's opaque geometry if the pipeline tests depth.
   void hide_behind_geometry(const Pipeline& pipeline, volume::RenderRequest& request);
 
  private:

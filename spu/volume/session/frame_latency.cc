@@ -15,7 +15,7 @@ using volume::RenderRequest;
 
 constexpr std::size_t most_views = 4;
 
-/// Also what the camera takes along: where samples lie, and the opaque geometry in front.
+/// Also by what moves with the camera: where samples lie, and the opaque geometry in front.
 bool differ_by_the_camera_alone(const RenderRequest& a, const RenderRequest& b) {
   RenderRequest as_b = a;
   as_b.texture_to_clip = b.texture_to_clip;
@@ -38,15 +38,15 @@ FrameLatency::~FrameLatency() {
   try {
     finish();
   } catch (...) {
-    // Nobody is left to be told.
+    // There is nobody to report to.
   }
 }
 
-/// What is being cast becomes a view. Throws what casting it threw.
+/// Makes a view of the image that is being cast. Throws what casting it threw.
 void FrameLatency::finish() {
   if (!cast_.valid()) return;
   if (getpid() != process_) {
-    // After a fork() the thread that casts it is the parent's, and waiting for it would never end.
+    // After a fork() the casting thread exists in the parent only: waiting for it would never end.
     static_cast<void>(new std::future<View>(std::move(cast_)));
     return;
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A render service before another one that lets the nodes work while the application does (`--frame-latency
-// 1`): while the camera moves, a request is answered with the image of the one before, and its own is cast
-// until the next one comes. A request that is asked again is answered with its own image, so that what a
-// resting camera shows is never behind.
+// A render service in front of another one that lets the nodes work while the application does
+// (`--frame-latency 1`). While the camera moves, a request is answered with the image of the previous one, and
+// its own image is cast until the next request comes. A repeated request is answered with its own image, so
+// that a camera at rest never shows a late one.
 #pragma once
 
 #include <sys/types.h>
@@ -30,7 +30,7 @@ class FrameLatency final : public compositor::RenderService {
   void end_volume(volume::VolumeId id) override;
   void forget_volume(volume::VolumeId id) override;
 
-  /// Whether the images of the next requests may be behind; in the beginning they may not.
+  /// Sets whether the images of the next requests may be late; initially they may not.
   void allow(bool behind) { allowed_ = behind; }
   /// Whether the latest image is that of an earlier request.
   bool is_behind() const { return behind_; }
@@ -46,7 +46,7 @@ class FrameLatency final : public compositor::RenderService {
     volume::RenderRequest request;
     volume::Image image;
     volume::FrameCounts counts;
-    bool told = false;  ///< the counts
+    bool told = false;  ///< the counts have been returned
   };
 
   void finish();
@@ -59,7 +59,7 @@ class FrameLatency final : public compositor::RenderService {
   bool allowed_ = false;
   bool behind_ = false;
   std::vector<View> views_;  ///< the latest last
-  volume::Image shown_;      ///< behind
+  volume::Image shown_;      ///< the late image that was returned
   std::future<View> cast_;
 };
 

@@ -19,7 +19,7 @@ using volume::RenderRequest;
 
 constexpr std::size_t remembered = 4;
 
-/// What of a request is another than it was.
+/// Returns which part of a request has changed.
 std::string_view changed_part(const RenderRequest& now, const RenderRequest& then) {
   if (now.version != then.version) return "texels changed";
   if (now.viewport != then.viewport || now.window != then.window) return "the window changed";
@@ -74,7 +74,7 @@ class LastImage final : public compositor::RenderService {
     news_(why);
     Answer& answer = known ? *same : place_for_another();
     if (!known) answer.request = request;
-    // Who asks in turn for several images gets copies: the service keeps but its last.
+    // A viewer that requests several images in turn gets copies: the service keeps only its last image.
     answer.kept = known && keeps_ ? copy_of(rendered.image) : volume::Image();
     answer.shown = known && keeps_ ? answer.kept.view() : rendered.image;
     answer.there = true;
@@ -94,9 +94,9 @@ class LastImage final : public compositor::RenderService {
   struct Answer {
     RenderRequest request;
     volume::ImageView shown;
-    volume::Image kept;  ///< what is shown, where it is a copy
+    volume::Image kept;  ///< the image shown, if it is a copy
     bool there = false;
-    std::uint64_t asked = 0;  ///< when, in images
+    std::uint64_t asked = 0;  ///< number of the request
   };
 
   void forget_images() {
@@ -119,9 +119,9 @@ class LastImage final : public compositor::RenderService {
 
   std::unique_ptr<compositor::RenderService> service_;
   bool keeps_;
-  pid_t process_ = getpid();  ///< after a fork() images belong to the parent, whose nodes draw over them
+  pid_t process_ = getpid();  ///< after a fork() images belong to the parent, whose nodes overwrite them
   ImageNews news_;
-  std::vector<Answer> answers_;  ///< never moves: images are looked at where they are
+  std::vector<Answer> answers_;  ///< never reallocated: images are used in place
   std::uint64_t asked_ = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A render service before another one: a request that was asked before is answered with the image that is
-// still there. Some viewers draw all they show twice a frame; all draw frames in which nothing has moved.
+// A render service in front of another one that answers a repeated request with the image that is still there.
+// Some viewers draw everything twice per frame; all of them draw frames in which nothing has moved.
 #pragma once
 
 #include <functional>
@@ -11,11 +11,11 @@
 
 namespace understudy::spu {
 
-/// Hears of every image that is asked for: why it is cast, or nothing where there was no need.
+/// Called for every image that is requested, with the reason why it is cast; empty: it was reused.
 using ImageNews = std::function<void(std::string_view why_cast)>;
 
-/// Up to four requests are remembered, for viewers that show several volumes, or one in several images. A
-/// image is given again for as long as no volume changes. Without `keeps` every image is cast.
+/// Remembers up to four requests, for viewers that show several volumes, or one volume in several images. An
+/// image is reused as long as no volume changes. Without `keeps` every image is cast.
 std::unique_ptr<compositor::RenderService> with_last_image(std::unique_ptr<compositor::RenderService> service,
                                                            bool keeps, ImageNews news);
 

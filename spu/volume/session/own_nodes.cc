@@ -28,7 +28,7 @@ namespace {
 
 constexpr std::chrono::seconds patience{5};
 
-/// build/bin/understudy beside build/lib, where this code lies.
+/// Returns build/bin/understudy, beside build/lib, which contains this library.
 std::filesystem::path launcher_beside_this_library() {
   Dl_info self{};
   if (dladdr(reinterpret_cast<const void*>(&start_own_nodes), &self) == 0 || self.dli_fname == nullptr)
@@ -38,13 +38,14 @@ std::filesystem::path launcher_beside_this_library() {
   return library.parent_path().parent_path() / "bin" / "understudy";
 }
 
-/// No entry library and no option of the viewer may reach the nodes.
+/// Neither an entry library nor an option of the viewer may reach the nodes.
 bool is_for_the_viewer_alone(std::string_view variable) {
   return variable.starts_with("LD_AUDIT=") || variable.starts_with("LD_PRELOAD=") ||
          variable.starts_with("UNDERSTUDY_");
 }
 
-/// Runs in the background of a shell that ends at once: the viewer must not find a child that it did not start.
+/// Runs the command in the background of a shell that exits at once: the viewer must not find a child that it
+/// did not start.
 int spawn_apart(std::vector<std::string> words) {
   words.insert(words.begin(), {"/bin/sh", "-c", "\"$0\" \"$@\" &"});
   std::vector<char*> arguments;
@@ -64,7 +65,7 @@ int spawn_apart(std::vector<std::string> words) {
   posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  // A session of its own: Ctrl-C is for the viewer, and the nodes go when it has gone.
+  // A session of its own: Ctrl-C is for the viewer, and the nodes exit after it.
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
   sigset_t signals;
   sigemptyset(&signals);
@@ -83,7 +84,7 @@ int spawn_apart(std::vector<std::string> words) {
   return error;
 }
 
-/// False when the service ended (it takes its folder along) or was too slow.
+/// False if the service exited (it removes its folder) or was too slow.
 bool socket_appears(const std::filesystem::path& socket) {
   const auto until = std::chrono::steady_clock::now() + patience;
   while (std::chrono::steady_clock::now() < until && std::filesystem::exists(socket.parent_path())) {

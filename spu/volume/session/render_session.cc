@@ -19,10 +19,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// The first connection waits for mpirun to start its ranks; later ones must not hold up the viewer's frames.
+/// The first connection waits for mpirun to start its ranks; later ones must not delay the viewer's frames.
 constexpr int first_patience_ms = 30000;
 constexpr int later_patience_ms = 20;
-/// Between two attempts the application draws by itself.
+/// Between two attempts the application draws.
 constexpr auto retry_after = 200ms;
 
 }  // namespace
@@ -40,7 +40,7 @@ compositor::RenderService& RenderSession::service() {
   try {
     service_ = with_last_image(connect(), !disabled_optimizations(Optimization::unchanged_images),
                                [this](std::string_view why) { heard_of_image(why); });
-    // The ray caster of this process is the viewer's own time.
+    // A ray caster in this process would take the viewer's own time.
     if (options_.frame_latency > 0 && service_->nodes() > 0) {
       auto pipeline = std::make_unique<FrameLatency>(std::move(service_));
       pipeline_ = pipeline.get();
@@ -52,7 +52,7 @@ compositor::RenderService& RenderSession::service() {
     }
     why_lost_ = unreachable.reason();
     not_before_ = std::chrono::steady_clock::now() + retry_after;
-    connected_once_ = true;  // whoever was not there after 30 s is not waited for again
+    connected_once_ = true;  // nodes that did not answer within 30 s are not waited for again
     throw;
   }
   connected_once_ = true;
@@ -99,7 +99,7 @@ void RenderSession::forget(volume::VolumeId id) {
 }
 
 void RenderSession::lost(const compositor::ServiceLost& loss) {
-  // Every frame that finds no service says so; the next attempt must not move away before it.
+  // Every frame without a service gets here, and must not postpone the next attempt.
   if (!service_) return;
   if (!launcher_tells()) {
     logging::log(logging::Level::warn, "{}; the viewer draws by itself until the nodes are back", loss.what());

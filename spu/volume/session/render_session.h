@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The process's one way to the render service: made when the first volume is recognised, shared by all
-// contexts, and made again after a node group was lost.
+// The process's only connection to the render service: created when the first volume is recognised, shared by
+// all contexts, and created again after a node group was lost.
 #pragma once
 
 #include <atomic>
@@ -37,43 +37,43 @@ class RenderSession {
 
   FrameLedger& ledger() { return ledger_; }
 
-  /// Whoever talks to the service holds this for as long as it looks at what the service returned.
+  /// Must be held while the service, or what it has returned, is used.
   std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
 
-  /// The service; connects when there is none. Throws compositor::ServiceLost, at once while it is too early to
-  /// try again. Needs the lock.
+  /// Returns the service; connects if there is none. Throws compositor::ServiceLost, immediately if it is too
+  /// early to try again. Requires the lock.
   compositor::RenderService& service();
 
-  /// Grows whenever a new service begins, which knows no volumes yet.
+  /// Increases whenever a new service begins, which has no volumes yet.
   std::uint64_t generation() const { return generation_; }
 
-  /// Told at frame ends: whether this thread's window is one that can be asked to draw itself again. Only then
-  /// images may be behind.
+  /// Set at frame ends: whether this thread's window can be asked to draw itself again. Images may be late only
+  /// then.
   void window_can_be_asked(bool can) { window_can_be_asked_ = can; }
   bool window_can_be_asked() const { return window_can_be_asked_; }
-  /// Whether the next images may be those of the frame before (`--frame-latency`); without nodes they never
-  /// are. Needs the lock.
+  /// Sets whether the next images may be those of the frame before (`--frame-latency`); without nodes they
+  /// never are. Requires the lock.
   void allow_behind(bool allowed);
-  /// The latest image is to be shown: counted where it is behind. Needs the lock.
+  /// Called when the latest image is to be shown: counts it if it is late. Requires the lock.
   void note_shown();
-  /// Whether one has been shown that was behind since this was last asked.
+  /// Returns whether a late image has been shown since the last call.
   bool take_behind() { return behind_shown_.exchange(false); }
 
-  /// The service failed: explained once, and the next call of service() connects anew. Needs the lock.
+  /// Called when the service failed: explains it once; the next call of service() connects anew. Requires the
+  /// lock.
   void lost(const compositor::ServiceLost& loss);
 
-  /// The service need not keep the volume any longer; a service that is lost has forgotten it anyway. Needs the
-  /// lock.
+  /// Lets the service discard the volume; a service that is lost has done so anyway. Requires the lock.
   void forget(volume::VolumeId id);
 
-  /// The program is ending, and what the ray caster stands on is taken apart: from now on there is no service.
-  /// May be called from a signal handler that calls exit(), whatever the thread is in the midst of.
+  /// Called when the program ends, and what the ray caster depends on is destroyed: from now on there is no
+  /// service. May be called from a signal handler that calls exit(), whatever the thread is doing.
   void end() { ended_ = true; }
 
   volume::VolumeId new_volume_id() { return ++last_volume_; }
 
  private:
-  /// Whoever started the nodes says itself what became of them; then nothing is said here.
+  /// Whether whoever started the nodes reports what happens to them; then nothing is printed here.
   bool launcher_tells() const;
   std::unique_ptr<compositor::RenderService> connect();
   void heard_of_image(std::string_view why_cast);
@@ -83,7 +83,7 @@ class RenderSession {
   std::mutex mutex_;
   std::string address_;  ///< of the nodes; empty: embedded
   std::unique_ptr<compositor::RenderService> service_;
-  FrameLatency* pipeline_ = nullptr;  ///< the service, where images may be behind
+  FrameLatency* pipeline_ = nullptr;  ///< the service, if images may be late
   std::atomic<bool> window_can_be_asked_ = false;
   std::atomic<bool> behind_shown_ = false;
   std::uint64_t generation_ = 0;
@@ -91,7 +91,7 @@ class RenderSession {
   bool connected_once_ = false;
   std::atomic<bool> ended_ = false;
   std::chrono::steady_clock::time_point not_before_{};
-  std::string why_lost_;  ///< in few words, for frames until then
+  std::string why_lost_;  ///< in few words, for frames until `not_before_`
 };
 
 }  // namespace understudy::spu

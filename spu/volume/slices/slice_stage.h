@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stage for slices: from a recognised run to a request, by way of upload, classification and composition.
+// The stage for slices: makes a request of a recognised run, by upload, classification and composition.
 #pragma once
 
 #include "spu/volume/classification/classifier.h"
@@ -25,12 +25,13 @@ class SliceStage {
   SliceStage(Uploader& uploader, Classifier& classifier, RequestComposer& composer)
       : uploader_(uploader), classifier_(classifier), composer_(composer) {}
 
-  /// The request for `seen`, drawn by `pipeline`. Sends texels and probes colours where `known` does not hold,
-  /// and leaves there what it has found. Needs the session's lock. Throws Refusal, and what the service throws.
+  /// Returns the request for `seen`, drawn by `pipeline`. Sends texels and probes colours unless `known` is
+  /// still valid, and stores the results there. Requires the session's lock. Throws Refusal, and what the
+  /// service throws.
   ImageRequest request(const Pipeline& pipeline, const RecognisedRun& seen, KnownSlices known,
                        compositor::RenderService& service);
 
-  /// The same of a texture whose texels are not sent; nothing hides the volume.
+  /// The same without sending texels, and without what hides the volume.
   ImageRequest compose(const Pipeline& pipeline, const RecognisedRun& seen, KnownSlices known);
 
  private:

@@ -76,7 +76,7 @@ struct Component {
   GLenum type;
 };
 
-/// The component that the base format stores, and its size in bits.
+/// Determines the component that the base format stores, and its size in bits.
 std::optional<std::string> describe_components(const GlContext& context, GLenum target,
                                                TextureDescription& description) {
   const DispatchTable& gl = *context.gl;
@@ -107,7 +107,7 @@ std::optional<std::string> describe_components(const GlContext& context, GLenum 
       description.type = bits <= 8 ? volume::TexelType::u8 : volume::TexelType::u16;
       description.steps = bits <= 8 ? 255 : 65535;
     } else if (type == GL_SIGNED_NORMALIZED) {
-      // Most computed tomographies (VTK, ITK): read as the numbers from -1 to 1 that the pipeline sees.
+      // Most computed tomographies (VTK, ITK): read as the values from -1 to 1 that the pipeline gets.
       description.type = volume::TexelType::f32;
       description.held = {-1, 1};
       description.steps = bits <= 8 ? 127 : 32767;
@@ -129,10 +129,10 @@ volume::Wrap wrap_of(GLint mode, volume::Filter filter) {
       return volume::Wrap::repeat;
     case GL_CLAMP_TO_BORDER:
       return volume::Wrap::border;
-    // GL_CLAMP clamps the coordinate to [0,1] and filters with the border from there.
+    // GL_CLAMP clamps the coordinate to [0,1]; there the linear filter includes the border.
     case GL_CLAMP:
       return filter == volume::Filter::linear ? volume::Wrap::border : volume::Wrap::edge;
-    // Mirrored modes repeat the edge texel inside [0,1].
+    // Within [0,1], mirrored modes repeat the edge texel.
     default:
       return volume::Wrap::edge;
   }
@@ -145,7 +145,7 @@ GLenum pixel_format(BaseFormat base) {
     case BaseFormat::rgba:
       return GL_RGBA;
     default:
-      return GL_RED;  // luminance and intensity answer with their value in red
+      return GL_RED;  // luminance and intensity are returned as red
   }
 }
 
@@ -160,7 +160,7 @@ GLenum pixel_type(volume::TexelType type) {
   }
 }
 
-/// Luminance comes as red, with neither green nor blue.
+/// Copies luminance, which is read as red, to green and blue.
 void spread_luminance(const TextureDescription& description, std::span<std::byte> texels) {
   for (std::size_t i = 0; description.grey && i + 3 < texels.size(); i += 4)
     texels[i + 1] = texels[i + 2] = texels[i];
@@ -187,7 +187,7 @@ class BoundTexture final : public TexelSource {
                             GLsizei(texels.size()), texels.data());
       return;
     }
-    // Before OpenGL 4.5 only the whole level can be read: one copy, gone with this source.
+    // Before OpenGL 4.5 only the whole level can be read: one copy, freed with this source.
     const std::size_t texel = volume::bytes_per_texel(description_.type);
     const volume::TexelBox whole{{0, 0, 0}, description_.size};
     if (level_.empty()) {
@@ -239,19 +239,19 @@ class Stack final : public TexelSource {
   std::vector<std::byte> slice_;
 };
 
-/// Whether samples can only be of level 0, which is the base level.
+/// Returns whether samples can only be of level 0, which is the base level.
 bool has_one_level(const GlContext& context, GLenum target) {
   const DispatchTable& gl = *context.gl;
   GLint last = 0;
   gl.GetTexParameteriv(target, GL_TEXTURE_MAX_LEVEL, &last);
   if (last == 0) return true;
-  // Of a texture whose storage is immutable the last level is at most the last that it has.
+  // In a texture with immutable storage, the last level is at most the last that it has.
   GLint levels = 0;
   if (context.version >= 430) gl.GetTexParameteriv(target, GL_TEXTURE_IMMUTABLE_LEVELS, &levels);
   return levels == 1;
 }
 
-/// The minifying filter; without its mipmap part if only level 0 can be sampled.
+/// Returns the minifying filter, without its mipmap part if only level 0 can be sampled.
 GLenum minifying_filter(const GlContext& context, GLenum target, GLint sampler) {
   const auto filter = GLenum(texture_parameter(*context.gl, target, sampler, GL_TEXTURE_MIN_FILTER));
   if (filter == GL_NEAREST || filter == GL_LINEAR || !has_one_level(context, target)) return filter;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The volume itself, read from the driver.
+// Reads a volume's texels from the driver.
 //
-// Whatever way the texels went up (whole, slice by slice, from a buffer, copied, defined twice), the driver
-// holds the result; it is read when a draw is recognised, slice range by slice range, and goes straight into
-// bricks. No copy stays here.
+// However the application uploaded the texels (whole, slice by slice, from a buffer, copied, defined twice),
+// the driver has the result. It is read when a draw is recognised, slice range by slice range, and goes
+// directly into bricks. No copy is kept here.
 #pragma once
 
 #include <array>
@@ -22,17 +22,17 @@ namespace understudy::spu {
 
 struct GlContext;
 
-/// What the pipeline sees when it samples the texture.
+/// What the pipeline gets when it samples the texture.
 enum class BaseFormat { red, luminance, intensity, alpha, rgba };
 
 struct TextureDescription {
   std::array<int, 3> size{};
   volume::TexelType type = volume::TexelType::u8;
-  std::array<float, 2> held{0, 1};  ///< the least and the greatest number that the format holds
+  std::array<float, 2> held{0, 1};  ///< the least and the greatest value of the format
   int steps = 255;                  ///< texels are multiples of 1 / steps; 0: floats
   BaseFormat base = BaseFormat::red;
-  bool opaque = false;  ///< colours without alpha: it is 1 everywhere
-  bool grey = false;    ///< colours are luminance and alpha
+  bool opaque = false;  ///< colours without alpha: alpha is 1 everywhere
+  bool grey = false;    ///< colours are luminance with alpha
   volume::Filter filter = volume::Filter::linear;
   std::array<volume::Wrap, 3> wrap{};
   volume::Rgba border{};
@@ -40,22 +40,22 @@ struct TextureDescription {
   std::string format_name;  ///< for the report: "INTENSITY8", "R16F"
 };
 
-/// Describes the texture bound to `target` of the active unit. A reason where it is not a volume that we can
-/// hold.
+/// Describes the texture bound to `target` of the active unit. Returns a reason if it is not a volume that can
+/// be held.
 std::optional<std::string> describe_texture(const GlContext& context, GLenum target, int unit,
                                             TextureDescription& description);
 
-/// Of a float texture that reads like one of base format `base`: internal format, and format of its texels.
+/// Returns the internal format of a float texture that is sampled like one of base format `base`.
 GLenum probe_format(BaseFormat base);
-/// The same with one byte a component.
+/// The same with one byte per component.
 GLenum byte_probe_format(BaseFormat base);
 GLenum upload_format(BaseFormat base);
 
-/// Where texels are read from, any box of them. Expects tight pixel packing (SavedState).
+/// Reads any box of texels. Expects tight pixel packing (SavedState).
 class TexelSource {
  public:
   virtual ~TexelSource() = default;
-  /// Tightly packed, x fastest. Throws std::runtime_error with a reason.
+  /// Texels are tightly packed, x fastest. Throws std::runtime_error with a reason.
   virtual void read(const volume::TexelBox& box, std::span<std::byte> texels) = 0;
 };
 
@@ -63,8 +63,7 @@ class TexelSource {
 std::unique_ptr<TexelSource> texture_source(const GlContext& context, GLuint texture,
                                             const TextureDescription& description);
 
-/// A stack of 2-D textures, which are bound to the active unit one by one. Those that are not alike are
-/// refused.
+/// A stack of 2-D textures, which are bound to the active unit one by one. Refuses textures that are not alike.
 std::unique_ptr<TexelSource> stack_source(const GlContext& context, std::span<const GLuint> textures,
                                           const TextureDescription& description);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a texture is looked up: as its sampler object says where it has one, or as it says itself.
+// Sampling parameters of a texture: those of its sampler object if there is one, otherwise its own.
 #pragma once
 
 #include "dispatch/table.h"
@@ -8,10 +8,11 @@ namespace understudy::spu {
 
 struct GlContext;
 
-/// The sampler object of the active unit; 0: there is none.
+/// Returns the sampler object of the active unit; 0: there is none.
 GLint bound_sampler(const GlContext& context);
 
-/// Of the texture that is bound to `target` of the active unit.
+/// Returns a parameter of `sampler` or, if it is 0, of the texture that is bound to `target` of the active
+/// unit.
 GLint texture_parameter(const DispatchTable& gl, GLenum target, GLint sampler, GLenum name);
 
 }  // namespace understudy::spu

@@ -10,7 +10,8 @@
 namespace understudy::spu {
 namespace {
 
-/// The least number of values, `needed` or more, that a table's intervals divide or are divided by.
+/// Returns the least number of values, `needed` or more, that divides a table's intervals or is a multiple of
+/// them.
 int values_that_fit(int needed) {
   constexpr int intervals = probed_entries - 1;
   if (needed > intervals) return (needed + intervals - 1) / intervals * intervals;
@@ -19,7 +20,7 @@ int values_that_fit(int needed) {
   return intervals / entries_a_value;
 }
 
-/// Of texels that are multiples of 1 / `steps`, between the numbers of `held`.
+/// Rounds the range of texels that are multiples of 1 / `steps`, within `held`.
 std::array<float, 2> rounded_outwards(std::array<float, 2> range, std::array<float, 2> held, int steps) {
   const auto value = [&](float number) { return int(std::lround(double(number) * steps)); };
   const int least = value(held[0]);
@@ -28,7 +29,7 @@ std::array<float, 2> rounded_outwards(std::array<float, 2> range, std::array<flo
   const int stride = std::max(int(std::bit_ceil(unsigned(value(range[1]) - value(range[0]) + 1))) / 8, 1);
   int low = least + (value(range[0]) - least) / stride * stride;
   const int high = std::min(least + ((value(range[1]) - least) / stride + 1) * stride, greatest);
-  // Never more than 16 entries a value, as over 8 bits.
+  // Never more than 16 entries per value, as over 8 bits.
   const int values = values_that_fit(std::max(high - low, 255));
   if (values > greatest - least + 1) return held;
   low = std::min(low, greatest - values);
@@ -45,7 +46,7 @@ std::array<float, 2> value_range(const TextureDescription& description, std::arr
     range[1] = std::max(range[1], description.border[0]);
   }
   if (description.steps > 0) return rounded_outwards(range, description.held, description.steps);
-  // A constant field has no range to spread a table over: any room above it will do.
+  // A constant field has no range to spread a table over: any range above it will do.
   if (range[0] == range[1]) range[1] += std::max(std::abs(range[1]), 1.0F);
   return range;
 }

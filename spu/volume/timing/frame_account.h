@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One context's part of a frame: where its time goes, and what it did and left out.
+// One context's part of a frame: where its time goes, and which work it did and skipped.
 #pragma once
 
 #include "spu/volume/context/context.h"
@@ -8,16 +8,16 @@
 
 namespace understudy::spu {
 
-/// Handed to every stage of the volume unit, which counts here what it does.
+/// Passed to every stage of the volume unit, which counts its work here.
 class FrameAccount {
  public:
-  /// `owner` names the context in the ledger.
+  /// `owner` identifies the context in the ledger.
   FrameAccount(const GlContext& context, FrameLedger& ledger, FrameLedger::Context owner)
       : context_(context), ledger_(ledger), owner_(owner) {}
 
   FrameClock& clock() { return clock_; }
 
-  /// `change` is made to what this context did since the last frame end.
+  /// Applies `change` to the record of what this context did since the last frame end.
   template <class Change>
   void note(Change change) {
     GLint framebuffer = 0;
@@ -35,7 +35,7 @@ class FrameAccount {
   FrameClock clock_;
 };
 
-/// Counts a frame that has ended; with `explain` one in which something was substituted is told on stderr.
+/// Counts a frame that has ended; with `explain`, prints it on stderr if something was substituted.
 void report_frame(const FrameRecord& frame, bool explain);
 
 }  // namespace understudy::spu

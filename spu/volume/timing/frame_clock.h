@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the volume unit's part of a frame goes: recognising, reading depth, uploading, rendering,
-// verifying, presenting.
+// Measures the volume unit's part of a frame: recognition, reading of depth, upload, rendering, verification,
+// presentation.
 #pragma once
 
 #include <chrono>
@@ -9,19 +9,19 @@
 
 namespace understudy::spu {
 
-/// At any time at most one share of the frame is being timed.
+/// At any time at most one share of the frame is timed.
 class FrameClock {
  public:
   using Share = double FrameShares::*;
 
-  /// What was timed since the last call.
+  /// Returns what was timed since the last call.
   FrameShares take();
 
  private:
   friend class TimedShare;
   using Clock = std::chrono::steady_clock;
 
-  /// nullptr: the application's own time. Gives what was timed until now.
+  /// Returns the share that was timed until now; nullptr: the application's own time.
   Share switch_to(Share share);
 
   FrameShares sum_{};
@@ -29,7 +29,7 @@ class FrameClock {
   Clock::time_point since_{};
 };
 
-/// Counts the time it lives to one share, and not to the share around it.
+/// Adds the time of its scope to one share, and not to the share around it.
 class TimedShare {
  public:
   TimedShare(FrameClock& clock, FrameClock::Share share) : clock_(clock), around_(clock.switch_to(share)) {}

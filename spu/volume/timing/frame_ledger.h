@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each context of the process did since its last frame end. A context that draws into framebuffer objects
-// and ends no frames draws for those that do (Qt's widgets have a context of their own, and are shown by
-// another): its figures go to the next frame that ends anywhere.
+// Records what each context of the process did since its last frame end. A context that draws into framebuffer
+// objects and ends no frames draws for contexts that do (Qt's widgets have a context of their own, and are
+// shown by another): its figures go to the next frame that ends anywhere.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace understudy::spu {
 
-/// Safe from any thread.
+/// Thread-safe.
 class FrameLedger {
  public:
-  /// Stands for one context; a pointer to compare, never followed.
+  /// Identifies one context; a pointer that is compared, never dereferenced.
   using Context = const void*;
 
-  /// Calls `change` on what `context` did so far. What it draws into its window it will show itself.
+  /// Calls `change` on the record of `context`. A context that draws into its window ends frames itself.
   template <class Change>
   void note(Context context, bool into_window, Change change) {
     const std::scoped_lock lock(mutex_);
@@ -26,15 +26,15 @@ class FrameLedger {
     page.ends_frames |= into_window;
     change(page.record);
   }
-  /// The same for whatever belongs to no context: it goes to the next frame that ends anywhere.
+  /// The same for work that belongs to no context: it goes to the next frame that ends anywhere.
   template <class Change>
   void note(Change change) {
     const std::scoped_lock lock(mutex_);
     change(left_behind_);
   }
-  /// `context` ends a frame: what belongs to it, everything but its time.
+  /// Called when `context` ends a frame. Returns all that belongs to the frame, except its time.
   FrameRecord close(Context context);
-  /// The context is gone; what it drew is not.
+  /// Called when the context is gone: what it drew goes to the next frame.
   void forget(Context context);
 
   /// Frames ended so far, in all contexts.
@@ -48,7 +48,7 @@ class FrameLedger {
 
   mutable std::mutex mutex_;
   std::map<Context, Page> pages_;
-  FrameRecord left_behind_{.error_rms = -1};  ///< by contexts that are gone, or by none
+  FrameRecord left_behind_{.error_rms = -1};  ///< of contexts that are gone, or of none
   std::uint64_t frames_ = 0;
 };
 

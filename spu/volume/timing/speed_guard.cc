@@ -46,7 +46,8 @@ void SpeedGuard::shown(double ours_ms, double native_ms, Clock::time_point now) 
   if (ever_shown_) {
     pay(ours_ms - native_ms, now);
   } else {
-    // The first image pays for what is measured once, and redeems the attempts before it.
+    // The first image includes what is measured once: it is not charged, and clears the charges of earlier
+    // attempts.
     account_ms_ = 0;
   }
   ever_shown_ = shown_in_state_ = true;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Never slower than the viewer: an account of time bounds what trying to substitute a volume may cost.
+// Never slower than the viewer: an account of time limits what attempts to substitute a volume may cost.
 //
-// What an attempt takes is paid from the account: all of it where it ended in a refusal, what it took longer
-// than the application's own drawing where it was shown; an image that was faster pays in. While the account is
-// in debt the application draws, and a fiftieth of the time that passes is paid in. So attempts that gain
-// nothing take at most 2 % of the time, however often and for whatever reason they fail, after a first look
-// that is short.
+// An attempt is charged to the account: all of its time if it ended in a refusal, the time beyond that of the
+// application's own drawing if its image was shown; an image that was faster is credited. While the account is
+// negative, the application draws, and a fiftieth of the elapsed time is credited. Attempts that gain nothing
+// therefore take at most 2 % of the time, however often and for whatever reason they fail, after a short first
+// look.
 #pragma once
 
 #include <chrono>
@@ -18,32 +18,31 @@ class SpeedGuard {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// A run of the volume is about to be drawn. `state` stands for what the verdict may depend on: the program
-  /// and the volume's contents. Where that is another, the volume is looked at again, at most every
-  /// state_pause.
+  /// Called before a run of the volume is drawn. `state` identifies what the verdict may depend on: the program
+  /// and the volume's contents. When it changes, a new first look begins, at most every state_pause.
   void about_to_draw(std::uint64_t state, Clock::time_point now);
   /// Whether the application draws.
   bool pauses(Clock::time_point now) const;
 
-  /// An attempt ended in a refusal, after so many milliseconds.
+  /// An attempt ended in a refusal after `ms` milliseconds.
   void refused(double ms, Clock::time_point now);
-  /// A run was shown in `ours_ms`, with all comparisons; the application's own drawing would have taken
+  /// A run was shown in `ours_ms`, including all comparisons; the application's own drawing would have taken
   /// `native_ms`.
   void shown(double ours_ms, double native_ms, Clock::time_point now);
-  /// The next attempt is likely to succeed, and is made whatever the account says.
+  /// The next attempt is likely to succeed, and is made whatever the balance of the account.
   void allow_another() { allowed_ = true; }
 
-  /// The sentence where images were shown and took longer; empty: it was for another reason that attempts
-  /// ended.
+  /// The sentence for the report if images were shown and took longer; empty: attempts ended for another
+  /// reason.
   const std::string& slower() const { return slower_; }
 
   static constexpr double share_for_attempts = 0.02;
-  /// A viewer's first frames may show nothing yet, or a volume that is still being loaded: they are a first
-  /// look. A refusal after an image was shown ends it.
+  /// A viewer's first frames may show nothing yet, or a volume that is still being loaded: this many attempts
+  /// are the first look. A refusal after an image was shown ends it.
   static constexpr int first_attempts = 3;
-  /// Refusals that took longer in all end the first look.
+  /// The first look ends when its refusals have taken longer in total.
   static constexpr double first_look_ms = 300;
-  /// The account holds at most this many frames of the application's: what was gained long ago does not excuse
+  /// The account holds at most the time of this many frames of the application: an earlier gain does not excuse
   /// being slower now.
   static constexpr double most_saved_frames = 4;
   static constexpr auto state_pause = std::chrono::seconds(5);

@@ -13,13 +13,13 @@ using volume::TexelBox;
 
 __extension__ using Product = unsigned __int128;
 
-// Any odd numbers with about as many ones as zeros.
+// Arbitrary odd numbers with about as many ones as zeros.
 constexpr std::uint64_t first_key = 0x9e3779b97f4a7c15, second_key = 0xd1b54a32d192ed03;
 
-/// Not 0, or a row that ends in zeros would make the product 0 whatever it begins with.
+/// Not 0: otherwise a row that ends in zeros would make the product 0 whatever it begins with.
 constexpr std::uint64_t first_hash = second_key;
 
-/// Folds the whole product: every bit of either factor reaches every bit of the result.
+/// Folds the whole product: every bit of either factor affects every bit of the result.
 std::uint64_t mixed(std::uint64_t a, std::uint64_t b) {
   const Product product = Product(a) * b;
   return std::uint64_t(product) ^ std::uint64_t(product >> 64);
@@ -62,10 +62,10 @@ void widen_by_words(std::array<float, 2>& range, const std::byte* texels, std::s
   range[1] = std::max(range[1], float(high) / 65535.0F);
 }
 
-/// Adds a box, or makes one longer that ends along `axis` where it begins.
+/// Adds a box, or extends one that ends along `axis` where it begins.
 void add(std::vector<TexelBox>& boxes, const TexelBox& box, std::size_t axis) {
   for (TexelBox& other : boxes) {
-    // Moved to where `box` begins, it must be there in all else.
+    // Moved along the axis to where `box` lies, it must be the same box.
     TexelBox moved = other;
     moved.low[axis] = box.low[axis];
     moved.high[axis] = box.high[axis];

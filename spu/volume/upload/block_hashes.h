@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was sent of a volume, as one 64-bit hash per block: enough to tell which texels differ when the
-// application uploads them all again, without keeping them. Two different blocks pass for equal once in 2^64.
+// One 64-bit hash for each block that was sent of a volume: determines which texels differ when the application
+// uploads all of them again, without keeping them. Two different blocks have equal hashes with probability
+// 2^-64.
 #pragma once
 
 #include <array>
@@ -20,16 +21,16 @@ class BlockHashes {
   BlockHashes() = default;
   BlockHashes(const volume::TexelBox& stored, volume::TexelType type);
 
-  /// The smallest box of whole blocks around what of `box` is stored; may be empty.
+  /// Returns the smallest box of whole blocks around the stored part of `box`; may be empty.
   volume::TexelBox whole_blocks(const volume::TexelBox& box) const;
 
-  /// Takes in the texels of a box, tightly packed, that ends on blocks' faces in x and y; along z a block's
-  /// slices may come in several calls, in rising order. Returns boxes around the blocks whose last slice came
-  /// and whose texels differ from those of last time; the first time all do.
+  /// Takes the texels of a box, tightly packed, that ends on faces of blocks in x and y; along z, the slices of
+  /// a block may come in several calls, in ascending order. Returns boxes around the blocks that are complete
+  /// now, and whose texels differ from the previous ones; the first time all do.
   std::vector<volume::TexelBox> take(const volume::TexelBox& box, std::span<const std::byte> texels);
 
-  /// Lowest and highest finite value, normalised, of a field of floats or of 16 bits; low > high when there is
-  /// none, and for other types.
+  /// Returns the lowest and highest finite value, normalised, of a field of floats or of 16 bits; low > high if
+  /// there is none, and for other types.
   std::array<float, 2> range() const;
 
  private:
@@ -46,7 +47,7 @@ class BlockHashes {
   std::array<std::size_t, 3> counts_{};
   std::vector<Block> blocks_;
   std::vector<bool> known_;      ///< per block
-  std::vector<Block> arriving_;  ///< one layer of blocks, as far as its slices have come
+  std::vector<Block> arriving_;  ///< one layer of blocks, as far as its slices have arrived
 };
 
 }  // namespace understudy::spu

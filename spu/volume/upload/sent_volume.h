@@ -12,12 +12,12 @@
 namespace understudy::spu {
 
 struct SentVolume {
-  volume::VolumeDescription description;  ///< as the service has it
-  std::uint64_t generation = 0;           ///< of the service that has it; 0: none
-  std::uint64_t texture_version = 0;      ///< of the texture, whose texels it has
-  BlockHashes hashes;                     ///< of the texels that it has
+  volume::VolumeDescription description;  ///< as the service holds it
+  std::uint64_t generation = 0;           ///< of the service that holds it; 0: none
+  std::uint64_t texture_version = 0;      ///< of the texture whose texels it holds
+  BlockHashes hashes;                     ///< of the texels that it holds
   TextureDescription texture;
-  std::array<float, 2> range{0, 1};  ///< of its values
+  std::array<float, 2> range{0, 1};  ///< of the texels' values
 };
 
 }  // namespace understudy::spu

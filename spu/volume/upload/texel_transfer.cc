@@ -12,7 +12,7 @@ namespace {
 
 using volume::TexelBox;
 
-/// Read and sent together, if one layer of blocks is not larger.
+/// Bytes that are read and sent together, unless one layer of blocks is larger.
 constexpr std::size_t slice_range_bytes = std::size_t(4) << 20;
 
 std::uint64_t bytes_of(const TexelBox& box, const volume::VolumeDescription& volume) {
@@ -77,7 +77,7 @@ Transferred send_changes(compositor::RenderService& service, volume::VolumeDescr
                       });
   }
   if (begun) service.end_volume(volume.id);
-  // Regions may overlap, and be sent twice where the texels changed in between.
+  // Regions may overlap: texels that changed in between are sent twice.
   const std::uint64_t whole = bytes_of(volume.stored, volume);
   transferred.left_out = whole - std::min(whole, transferred.sent);
   return transferred;

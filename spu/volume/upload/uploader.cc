@@ -20,7 +20,7 @@
 namespace understudy::spu {
 namespace {
 
-/// Texels of `size` that samples of `region` read, linear filter included.
+/// Returns the texels of a texture of `size` that samples in `region` read, including the linear filter.
 volume::TexelBox texels_of(const volume::Box& region, const std::array<int, 3>& size) {
   volume::TexelBox box;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -31,7 +31,7 @@ volume::TexelBox texels_of(const volume::Box& region, const std::array<int, 3>& 
   return box;
 }
 
-/// The region, and where the far ends of its segments may lie.
+/// Returns the region, extended to where the far ends of its segments may lie.
 volume::Box with_slice_segments(volume::Box region, std::span<const ObservedSegment> slice_segments) {
   const volume::Box without = region;
   for (const ObservedSegment& observed : slice_segments) {
@@ -43,8 +43,8 @@ volume::Box with_slice_segments(volume::Box region, std::span<const ObservedSegm
   return region;
 }
 
-/// Cells around their own that nodes need for segments: whole blocks, so that a view that turns sends nothing
-/// anew.
+/// Returns the width, in cells, of the ghost layer that nodes need for segments: whole blocks, so that a view
+/// that turns requires no new transfer.
 int ghost_layer_of(std::span<const ObservedSegment> slice_segments, const std::array<int, 3>& size) {
   double cells = 0;
   for (const ObservedSegment& observed : slice_segments) {
@@ -86,7 +86,7 @@ volume::VolumeDescription Uploader::described(const TexelsWanted& wanted, const 
     description.ghost_layer = std::max(description.ghost_layer, budget_ghost_layer);
   if (!kept) return description;
   description.ghost_layer = std::max(description.ghost_layer, sent.description.ghost_layer);
-  // Where the view showed a part first and shows more now, the whole is taken, once.
+  // If the view showed a part first and shows more now, the whole is sent, once.
   description.stored = volume::contains(sent.description.stored, description.stored)
                            ? sent.description.stored
                            : volume::TexelBox{{0, 0, 0}, texture.size};

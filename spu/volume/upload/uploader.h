@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stage that brings a texture's texels to the render nodes: once, and then what changes of them.
+// The stage that sends a texture's texels to the render nodes: all of them once, and then those that change.
 #pragma once
 
 #include <span>
@@ -29,14 +29,15 @@ class ShareGroup;
 
 struct GlContext;
 
-/// What is to be drawn of a texture.
+/// The part of a texture that is to be drawn.
 struct TexelsWanted {
-  const Pipeline& pipeline;                         ///< which texture, and the unit that it is bound to
+  const Pipeline& pipeline;                         ///< identifies the texture, and the unit that it is bound
+                                                    ///< to
   std::span<const GLuint> stack;                    ///< the textures of a stack; empty: one 3-D texture
-  std::uint64_t texture_version = 0;                ///< as the texture is now
-  volume::Box region;                               ///< of texture space
-  std::span<const ObservedSegment> slice_segments;  ///< whose far ends lie outside of it
-  int ghost_layer = 0;                              ///< cells that gradients reach
+  std::uint64_t texture_version = 0;                ///< current version of the texture
+  volume::Box region;                               ///< in texture space
+  std::span<const ObservedSegment> slice_segments;  ///< whose far ends may lie outside of `region`
+  int ghost_layer = 0;                              ///< cells around the region that gradients need
 };
 
 class Uploader {
@@ -44,12 +45,12 @@ class Uploader {
   Uploader(const GlContext& context, ShareGroup& group, RenderSession& session, FrameAccount& account)
       : context_(context), group_(group), session_(session), account_(account) {}
 
-  /// The pipeline's texture, or its stack of `stack_slices` textures (0: none). Throws Refusal where it is no
-  /// volume that can be held.
+  /// Describes the pipeline's texture, or its stack of `stack_slices` textures (0: none). Throws Refusal if it
+  /// is not a volume that can be held.
   TextureDescription describe(const Pipeline& pipeline, std::size_t stack_slices) const;
 
-  /// Makes `sent`, whose `texture` is up to date, what is wanted. Needs the session's lock. Throws Refusal or
-  /// std::runtime_error where texels cannot be read, and what the service throws.
+  /// Updates `sent`, whose `texture` is current, to what is wanted. Requires the session's lock. Throws Refusal
+  /// or std::runtime_error if texels cannot be read, and what the service throws.
   void upload(const TexelsWanted& wanted, SentVolume& sent, VolumeCounters& counters,
               compositor::RenderService& service);
 
@@ -66,7 +67,7 @@ class Uploader {
   FrameAccount& account_;
 };
 
-/// Tells the report of the texture.
+/// Records size and format of the texture for the report.
 void count_texture(VolumeCounters& counters, const TextureDescription& texture);
 
 }  // namespace understudy::spu

@@ -10,7 +10,7 @@
 namespace understudy::spu {
 namespace {
 
-/// The application's blending with an alpha that goes the way of the colour, as the nodes' images have it.
+/// In its scope, alpha is blended like the application's colour, as in the nodes' images.
 class ColourBlending {
  public:
   ColourBlending(const DispatchTable& gl, const Blending& blending) : gl_(gl) {
@@ -21,7 +21,7 @@ class ColourBlending {
     gl_.GetIntegerv(GL_BLEND_EQUATION_RGB, &equations_[0]);
     gl_.GetIntegerv(GL_BLEND_EQUATION_ALPHA, &equations_[1]);
     gl_.GetBooleanv(GL_COLOR_WRITEMASK, written_.data());
-    // Applications keep a window's alpha as it is; an image has one.
+    // Applications may leave a window's alpha unwritten; an image has alpha.
     gl_.ColorMask(written_[0], written_[1], written_[2], GL_TRUE);
     if (blending.replaces) return;
     gl_.BlendEquation(GLenum(equations_[0]));
@@ -47,7 +47,7 @@ class ColourBlending {
   std::array<GLboolean, 4> written_{};
 };
 
-/// The application's scissor narrowed to `rect` while it lives.
+/// Narrows the application's scissor to `rect` in its scope.
 class NarrowedScissor {
  public:
   NarrowedScissor(const DispatchTable& gl, const volume::Rect& rect)

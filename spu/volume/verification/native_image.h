@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the application itself would draw: its run, repeated off screen into a float framebuffer.
+// The application's native rendering: its run, repeated off screen into a float framebuffer.
 //
-// An 8-bit framebuffer loses fog (between 52 and 57 dB for usual slices, 39 dB at alpha 2/255), and would hold
+// An 8-bit framebuffer loses fog (between 52 and 57 dB for usual slices, 39 dB at alpha 2/255), and would count
 // the application's rounding against an exact image.
 #pragma once
 
@@ -20,28 +20,28 @@ struct RenderRequest;
 
 namespace understudy::spu {
 
-/// Four floats a pixel of `rect`.
+/// Four floats per pixel of `rect`.
 struct NativeImage {
   volume::Rect rect;
   std::vector<float> rgba;
 };
 
-/// What runs of one pipeline draw over transparent black (white for a minimum), one after the other: alpha
-/// going the way of the colour.
+/// What runs of one pipeline draw over transparent black (white for a minimum), one after the other; alpha is
+/// blended like the colour.
 class NativeDrawing {
  public:
   NativeDrawing(const GlContext& context, const Pipeline& pipeline, const volume::RenderRequest& request);
 
-  /// False where the driver cannot provide the framebuffer.
+  /// False if the driver cannot provide the framebuffer.
   bool complete() const { return framebuffer_ && framebuffer_->complete(); }
-  /// Draws the run's calls in the state that they were made for.
+  /// Draws the run's calls in the state for which they were made.
   void add(const Run& run);
-  /// Leaves nothing: drivers compile a program when it first draws into a framebuffer of a kind, which is not
-  /// what its drawing takes. `depth` as for redraw().
+  /// Draws into one pixel, and clears it: drivers compile a program when it first draws into a kind of
+  /// framebuffer, which is not part of the time of its drawing. `depth` as in redraw().
   void compile(const Run& run, const volume::Rect& window, const std::optional<volume::DepthImage>& depth);
-  /// As add(), to its end on the device. Returns the milliseconds that it took.
+  /// As add(), and waits for the device to finish. Returns the time in milliseconds.
   double add_timed(const Run& run);
-  /// As add(), within `rect` alone, which is cleared before; `depth` is what opaque geometry left there.
+  /// As add(), within `rect` only, which is cleared first; `depth` is what opaque geometry left there.
   void redraw(const Run& run, const volume::Rect& rect, const std::optional<volume::DepthImage>& depth);
   NativeImage image(const volume::Rect& rect) const;
 
@@ -53,7 +53,7 @@ class NativeDrawing {
   float background_ = 0;
 };
 
-/// That of one run. Null when the driver cannot provide the framebuffer.
+/// Returns the native image of one run; null if `rect` is empty, or the driver cannot provide the framebuffer.
 std::optional<NativeImage> native_image(const GlContext& context, const Run& run,
                                         const volume::RenderRequest& request, const volume::Rect& rect);
 

@@ -6,10 +6,10 @@
 namespace understudy::spu {
 namespace {
 
-/// Of the images between two sentinels; more would come in a burst after a rest.
+/// Credit is kept for this many images between two sentinels; more would be spent in a burst after a rest.
 constexpr double most_credited_images = 100;
 constexpr int most_sentinels_at_once = 8;
-/// So much more of the window is covered than in any image that was compared.
+/// The footprint has grown if it is larger by this factor than in any image that was compared.
 constexpr double grown_footprint = 1.5;
 
 std::vector<std::size_t> changes(const VerificationSchedule::Inputs& before,
@@ -17,7 +17,7 @@ std::vector<std::size_t> changes(const VerificationSchedule::Inputs& before,
   std::vector<std::size_t> changed;
   for (std::size_t i = 0; i < before.size(); ++i) {
     if (now[i].effect == VerificationSchedule::Effect::followed) continue;
-    // What is no number differs from itself.
+    // A NaN differs from itself.
     if (!(before[i].value == now[i].value)) changed.push_back(i);
   }
   return changed;
@@ -42,7 +42,7 @@ void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint, do
   }
   const std::vector<std::size_t> changed = changes(inputs_, inputs);
   inputs_ = inputs;
-  // An image that was not compared leaves its changes to the next.
+  // Changes of an image that was not compared are kept for the next.
   if (!changed_) now_changed_.clear();
   for (const std::size_t index : changed) {
     const bool decides = inputs_[index].effect == Effect::decides;
@@ -81,7 +81,7 @@ void VerificationSchedule::whole_was_right(bool anything_visible, double native_
   const auto expected = this->native_ms();
   measured_ms_ = expected ? 0.5 * (*expected + native_ms) : native_ms;
   measured_samples_ = samples_;
-  // An image of nothing proves nothing.
+  // An empty image proves nothing.
   if (!anything_visible) return;
   if (--to_prove_ <= 0) {
     right_ = true;
@@ -108,7 +108,7 @@ void VerificationSchedule::sentinels_took(int count, double ms) {
   if (!ms_a_sentinel_) ms_a_sentinel_ = one;
   // A stall of the machine is not charged.
   credit_ms_ -= count * std::min(one, 2 * *ms_a_sentinel_);
-  // Smoothed: one tile is no measurement.
+  // Smoothed: a single tile is not a measurement.
   *ms_a_sentinel_ += 0.2 * (one - *ms_a_sentinel_);
 }
 

@@ -12,7 +12,7 @@
 namespace understudy::spu {
 namespace {
 
-/// What is less than half a step of 8 bits cannot be seen.
+/// Less than half an 8-bit step is not visible.
 constexpr float least_visible = 0.5F / 255;
 
 /// RGBA as the framebuffer shows it, row by row.
@@ -26,7 +26,7 @@ struct ShownImage {
   }
 };
 
-/// How colours are shown by the framebuffer that both images are for.
+/// Shows colours like the framebuffer that both images are for.
 class Display {
  public:
   Display(const Pipeline& pipeline, const NativeImage& native)
@@ -37,7 +37,7 @@ class Display {
 
   float background() const { return minimum_ ? 1.0F : 0.0F; }
   float shown(float value) const {
-    // What is no number is shown as nothing.
+    // A NaN is shown as 0.
     const float number = std::isnan(value) ? 0.0F : value;
     const float seen = minimum_ ? std::min(number, 1.0F) : number;
     return floating_ ? seen / largest_ : std::clamp(seen, 0.0F, 1.0F);
@@ -55,7 +55,7 @@ ShownImage shown(const NativeImage& native, const Display& display) {
   return image;
 }
 
-/// The part of `image` that lies in `rect`, and the background around it.
+/// Returns the part of `image` that lies in `rect`, with the background around it.
 ShownImage shown(const volume::ImageView& image, const volume::Rect& rect, const Display& display) {
   ShownImage part{rect.width, rect.height, {}};
   part.rgba.assign(4 * rect.pixels(), display.shown(display.background()));
@@ -70,7 +70,7 @@ ShownImage shown(const volume::ImageView& image, const volume::Rect& rect, const
   return part;
 }
 
-/// How far `value` lies outside of what `image` has in a channel within one pixel of (x, y).
+/// Returns how far `value` lies outside of the range of a channel of `image` within one pixel of (x, y).
 float outside(float value, const ShownImage& image, int x, int y, std::size_t channel) {
   float low = std::numeric_limits<float>::max();
   float high = std::numeric_limits<float>::lowest();
@@ -87,7 +87,7 @@ float excess(const ShownImage& a, const ShownImage& b, int x, int y) {
   float largest = 0;
   for (std::size_t c = 0; c < 4; ++c) {
     const float va = a.at(x, y)[c], vb = b.at(x, y)[c];
-    // Most colours of a right image are about equal; their neighbours need not be looked at.
+    // Most colours of a right image are about equal; their neighbours need not be compared.
     if (std::abs(va - vb) <= std::max(largest, least_visible)) continue;
     largest = std::max({largest, outside(va, b, x, y, c), outside(vb, a, x, y, c)});
   }
@@ -117,7 +117,7 @@ TileDifference difference_of_tile(const ShownImage& a, const ShownImage& b, int 
       }
     }
   }
-  // A tile that the window cuts off weighs as little as it shows.
+  // A tile that the window cuts off counts only by what it shows.
   tile.excess /= compared_tile_edge * compared_tile_edge;
   const auto eighth = differences.begin() + differences.size() / 8;
   std::nth_element(differences.begin(), eighth, differences.end(), std::greater<>());

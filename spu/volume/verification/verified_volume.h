@@ -10,8 +10,8 @@ namespace understudy::spu {
 
 struct VerifiedVolume {
   VerificationSchedule schedule;
-  bool inside = false;      ///< an image with the eye inside was like the application's
-  std::string left_inside;  ///< why it is left while the eye is inside; empty: it is not
+  bool inside = false;      ///< an image with the eye inside was equal to the application's
+  std::string left_inside;  ///< why it is not substituted while the eye is inside; empty: it is
 };
 
 }  // namespace understudy::spu

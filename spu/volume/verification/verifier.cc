@@ -16,11 +16,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Rays of all directions begin at the eye: a step that is not quite known shows more than from outside, and in
-/// other views than the one that is compared.
+/// With the eye inside, rays of all directions begin at the eye: a step that is not known exactly has more
+/// effect than from outside, and also in other views than the one that is compared.
 constexpr double inside_psnr = 40;
 
-/// Neighbours of a sentinel's pixels are compared with, too.
+/// A sentinel's pixels are compared with their neighbours, too.
 constexpr int sentinel_rim = 1;
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stage that compares an image with what the application itself would draw, before it is shown: whole, or
-// in sentinels (schedule.h says when, tile_comparison.h by what bound).
+// in sentinels (schedule.h decides when, tile_comparison.h by which bound).
 #pragma once
 
 #include <array>
@@ -19,22 +19,22 @@
 
 namespace understudy::spu {
 
-/// Of an image, or of the first of its tiles that was wrong.
+/// The comparison of an image, or of the first of its tiles that was wrong.
 struct Comparison {
   ImageDifference difference;
-  double bound = 1;                 ///< of the worst tile's severity
+  double bound = 1;                 ///< for the severity of the worst tile
   bool right = false;               ///< within the bound
-  std::optional<double> native_ms;  ///< of a whole image: what the application's own drawing took; 0: not known
+  std::optional<double> native_ms;  ///< of a whole image: time of the application's own drawing; 0: unknown
 };
 
-/// The sentence for a comparison that was lost.
+/// Returns the refusal for a failed comparison.
 Refusal refusal_of(const Comparison& comparison);
 
-/// What is compared.
+/// The image that is compared, and the run that it replaces.
 struct ImageToVerify {
   const Run& run;
   const volume::RenderRequest& request;
-  volume::Rect window;  ///< that the application draws into: its viewport and scissor
+  volume::Rect window;  ///< into which the application draws: its viewport and scissor
   bool eye_inside = false;
   std::uint64_t frames = 0;  ///< of the volume, before this one
 };
@@ -47,16 +47,16 @@ class Verifier {
   /// Whether the volume's next image is compared whole.
   bool whole_due(const VerifiedVolume& volume, bool eye_inside, std::uint64_t frames) const;
 
-  /// Compares `image` with what the application draws. Null where nothing was compared, or sentinels were
-  /// right. Throws Refusal where the eye is inside and the steps are not known well enough.
+  /// Compares `image` with what the application draws. Null if nothing was compared, or if sentinels were
+  /// right. Throws Refusal if the eye is inside and the steps are not known precisely enough.
   std::optional<Comparison> verify(const ImageToVerify& what, const volume::ImageView& image,
                                    VerifiedVolume& volume, VolumeCounters& counters);
 
-  /// Whether another image of the same request is right where the last one was lost: it is compared with what
-  /// the application drew then.
+  /// Returns whether another image of the same request is right where the last comparison failed: it is
+  /// compared with what the application drew then.
   bool would_have_been_right(const Pipeline& pipeline, const volume::ImageView& image) const;
 
-  /// The verdict on a whole image, which is counted.
+  /// Returns the verdict on a whole image, and counts it.
   Comparison judge(const ImageDifference& difference, double bound, double native_ms, VolumeCounters& counters);
 
  private:
@@ -71,15 +71,16 @@ class Verifier {
   const GlContext& context_;
   RenderSession& session_;
   FrameAccount& account_;
-  /// When a comparison was lost: what the application drew, and the bound.
+  /// Of a failed comparison: what the application drew, and the bound.
   struct Lost {
     NativeImage native;
     double bound = 1;
   };
   Lost lost_to_;
   std::unique_ptr<NativeDrawing> sentinel_drawing_;
-  std::array<int, 4> sentinel_extent_{};  ///< of it: width, height, samples, whether its background is white
-  std::minstd_rand random_;               ///< where sentinels stand
+  std::array<int, 4> sentinel_extent_{};  ///< of sentinel_drawing_: width, height, samples, whether its
+                                          ///< background is white
+  std::minstd_rand random_;               ///< positions of sentinels
 };
 
 }  // namespace understudy::spu

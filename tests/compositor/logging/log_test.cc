@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines on stderr, in processes of their own: the environment is read once.
+// Log lines on stderr, in separate processes, because the environment is read only once.
 #include "compositor/logging/log.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is let in, and what everybody else is told: nothing is believed that has not been proved.
+// Which clients are accepted, and what the others receive: nothing is trusted that is not proved.
 #include "compositor/transport/tcp/handshake.h"
 
 #include <gmock/gmock.h>
@@ -77,7 +77,7 @@ TEST(Handshake, EachSessionHasKeysOfItsOwnAndOneForEachDirection) {
   EXPECT_EQ(all.size(), 6U);
 }
 
-/// Whoever is on the way takes the place of both ends and has no secret: he has keys with each, and no proof.
+/// An attacker in the middle replaces the keys of both ends: it has keys with each, but no proof.
 TEST(Handshake, KeysThatWereExchangedOnTheWayAreNotBelieved) {
   const Credentials secret = secret_of("sixteen bytes or more");
   const KeyPair of_somebody;
@@ -102,7 +102,7 @@ TEST(Handshake, AKeyThatGivesAKnownSecretIsNone) {
   }
 }
 
-/// A client and a server with key files, and whether the one is let in at the other.
+/// A client and a server with key files; whether the server accepts the client.
 struct ByKeys {
   KeyPair client;
   KeyPair server;
@@ -126,12 +126,12 @@ TEST(Handshake, KeysServeInPlaceOfASecret) {
   const KeyPair other;
   const Credentials client(keys.client, {keys.server.public_key()});
   EXPECT_TRUE(ByKeys::let_in(client, {keys.server, {other.public_key(), keys.client.public_key()}}));
-  // One of the keys is another.
+  // One of the keys is a different one.
   EXPECT_FALSE(ByKeys::let_in(client, {keys.server, {other.public_key()}}));
   EXPECT_FALSE(ByKeys::let_in(client, {other, {keys.client.public_key()}}));
   EXPECT_FALSE(ByKeys::let_in({other, {keys.server.public_key()}}, {keys.server, {keys.client.public_key()}}));
   EXPECT_FALSE(ByKeys::let_in({keys.client, {other.public_key()}}, {keys.server, {keys.client.public_key()}}));
-  // Neither end's public key alone is of use, nor is no key.
+  // Keys at one end alone are not enough.
   EXPECT_FALSE(ByKeys::let_in(secret_of("what somebody made up"), {keys.server, {keys.client.public_key()}}));
   EXPECT_FALSE(ByKeys::let_in(client, secret_of("sixteen bytes or more")));
 }
@@ -145,7 +145,7 @@ TEST(Handshake, AServerMayHaveKeysAndASecret) {
   EXPECT_FALSE(ByKeys::let_in(secret_of("what somebody made up"), server));
 }
 
-/// Whoever has stolen a server's key is not taken for its clients.
+/// A stolen key of a server does not make its thief a client.
 TEST(Handshake, AStolenKeyOfAServerMakesNoClient) {
   const ByKeys keys;
   const Credentials thief(keys.server, {keys.server.public_key()});
@@ -166,7 +166,7 @@ TEST(KeyFile, IsMadeForItsOwnerAloneAndReadAgain) {
   EXPECT_EQ(status.st_mode & 07777, 0600U);
   EXPECT_EQ(read_key_file(file).public_key(), key.public_key());
   EXPECT_EQ(read_public_keys(file + ".pub"), std::vector{key.public_key()});
-  // Nobody's key is lost.
+  // Existing files are not overwritten.
   EXPECT_THROW(make_key_file(file), std::runtime_error);
   std::filesystem::remove(file + ".pub");
   EXPECT_THROW(make_key_file(file), std::runtime_error);
@@ -218,7 +218,7 @@ TEST(Handshake, AnotherSecretIsToldSoAndLearnsNothing) {
   EXPECT_FALSE(server.proved());
   const std::vector<std::byte> words(server.last_words().begin(), server.last_words().end());
   ASSERT_EQ(words.size(), verdict_bytes);
-  // No byte of what only a holder of the secret could say.
+  // No byte that only a holder of the secret can compute.
   EXPECT_TRUE(std::all_of(words.begin() + 8, words.end(), [](std::byte byte) { return byte == std::byte(0); }));
   EXPECT_THAT(failure([&] { client.finish(words); }), HasSubstr("copy its --secret-file"));
 }
@@ -239,11 +239,11 @@ TEST(Handshake, ProofsServeOnce) {
   ServerHandshake first(secret);
   const auto proof = client.answer(challenge_to(first, client.hello()));
   EXPECT_NO_THROW(first.answer(proof));
-  // The same words to the same server again, which has another random number.
+  // The same messages, replayed to the server, which has another random number now.
   ServerHandshake second(secret);
   challenge_to(second, client.hello());
   EXPECT_THROW(second.answer(proof), HandshakeFailed);
-  // And the server's own words, sent back to it.
+  // The server's own message, sent back to it.
   const std::vector<std::byte> verdict = first.verdict(AdmissionVerdict::accepted);
   ServerHandshake third(secret);
   challenge_to(third, client.hello());
@@ -309,7 +309,7 @@ TEST(Secret, IsMadeOnceForItsOwnerAlone) {
   const Secret second = read_or_make_secret(file, made);
   EXPECT_FALSE(made);
   EXPECT_TRUE(std::ranges::equal(first.key(), second.key()));
-  // Nothing else was left there.
+  // No other file was left there.
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(std::string(folder / "")), {}), 1);
 }
 

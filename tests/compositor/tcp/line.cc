@@ -28,7 +28,7 @@ Line::~Line() {
   go_on();
   cut();
   accepting_.join();
-  cut();  // whoever was let in meanwhile
+  cut();  // clients accepted meanwhile
 }
 
 void Line::accept_all() {
@@ -38,7 +38,7 @@ void Line::accept_all() {
     FileDescriptor server = connect_to(to_, Clock::now() + std::chrono::seconds(20));
     wait_at(server);
     const int near = viewer.get(), far = server.get();
-    // A line keeps little.
+    // A connection buffers little.
     constexpr int kept_bytes = 1 << 20;
     ::setsockopt(near, SOL_SOCKET, SO_RCVBUF, &kept_bytes, sizeof kept_bytes);
     const std::lock_guard lock(mutex_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A line between clients and a server that a test can hold still or cut: it connects on whoever connects here.
+// A connection between clients and a server that a test can pause or cut; forwards all clients that connect.
 #pragma once
 
 #include <atomic>
@@ -16,23 +16,23 @@ namespace understudy::compositor::testing {
 
 class Line {
  public:
-  /// Throws std::runtime_error.
+  /// Forwards to the server at `to`. Throws std::runtime_error.
   explicit Line(const TcpAddress& to);
   ~Line();
 
-  /// For clients.
+  /// The address for clients.
   const TcpAddress& address() const { return address_; }
-  /// What has gone from the server to clients.
+  /// Bytes sent from the server to clients.
   std::uint64_t bytes_down() const { return bytes_down_; }
-  /// The other way.
+  /// Bytes sent from clients to the server.
   std::uint64_t bytes_up() const { return bytes_up_; }
 
-  /// From now on; at first as fast as it goes.
+  /// From now on; unlimited at first.
   void set_bytes_per_second(double rate) { bytes_per_second_ = rate; }
-  /// Nothing goes through, both ways, until go_on().
+  /// Forwards nothing, in either direction, until go_on().
   void stand_still();
   void go_on();
-  /// Ends all connections, and nobody is connected any more.
+  /// Ends all connections, and forwards no later client.
   void cut();
 
  private:
@@ -45,7 +45,7 @@ class Line {
   TcpAddress address_;
   std::atomic<std::uint64_t> bytes_down_ = 0;
   std::atomic<std::uint64_t> bytes_up_ = 0;
-  std::atomic<double> bytes_per_second_ = 0;  ///< 0: as fast as it goes
+  std::atomic<double> bytes_per_second_ = 0;  ///< 0: unlimited
   std::mutex mutex_;
   std::condition_variable changed_;
   bool still_ = false;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The listener under people who do not belong there: none of them disturbs those who do, and nothing of them
-// stays.
+// The listener with clients that are not accepted: they disturb no accepted client, and leave nothing behind.
 #include "compositor/transport/tcp/listener.h"
 
 #include <gmock/gmock.h>
@@ -29,7 +28,7 @@ Deadline soon() {
   return Clock::now() + std::chrono::seconds(20);
 }
 
-/// A listener that is stepped on a thread; clients that are let in are kept.
+/// A listener that is stepped on a thread; accepted clients are kept.
 class ListenerTest : public ::testing::Test {
  protected:
   void open(const ListenerLimits& limits = {std::chrono::milliseconds(1000), 64}) {
@@ -224,7 +223,7 @@ TEST_F(ListenerTest, AThousandUnauthenticatedClientsDisturbNoClientAndLeaveNothi
       const ClientHandshake handshake(secret_, {});
       for (int i = 0; i < 1000; ++i) {
         FileDescriptor socket = pending();
-        // Some say nothing, some nonsense, some begin as they should and never end.
+        // Some send nothing, some garbage, some begin correctly and never finish.
         if (i % 3 == 1) ::send(socket.get(), garbage.data(), garbage.size(), MSG_NOSIGNAL);
         if (i % 3 == 2) ::send(socket.get(), handshake.hello().data(), hello_bytes, MSG_NOSIGNAL);
         crowd.push_back(std::move(socket));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records of an encrypted session: what was sealed comes back, and nothing else is opened.
+// Records of an encrypted session: what was sealed is recovered, and nothing else is opened.
 #include "compositor/transport/tcp/record.h"
 
 #include <gmock/gmock.h>
@@ -30,7 +30,7 @@ RecordBytes noise(std::size_t size, unsigned seed = 1) {
   return bytes;
 }
 
-/// What comes of `line`, in pieces of at most `most` bytes.
+/// Returns the content of the records in `line`, which is read in pieces of at most `most` bytes.
 RecordBytes opened(RecordOpener& opener, std::span<const std::byte> line, std::size_t most = 1 << 20) {
   RecordBytes all;
   while (!line.empty()) {
@@ -52,7 +52,7 @@ class RecordTest : public ::testing::Test {
     const auto record = sealer_.seal(plain);
     return {record.begin(), record.end()};
   }
-  /// Why an opener does not open `line`; empty: it does.
+  /// Returns why an opener refuses `line`; empty if it does not.
   static std::string refusal(RecordOpener& opener, const RecordBytes& line) {
     try {
       opened(opener, line);
@@ -98,7 +98,7 @@ TEST_F(RecordTest, AChangedByteIsNeverOpened) {
     changed[at] ^= std::byte(4);
     RecordOpener opener(keys_.second.receive);
     RecordBytes to(64);
-    // A length that grew waits for more, and more comes.
+    // A larger length needs more bytes, so more are sent.
     const RecordBytes more(1 << 17);
     changed.insert(changed.end(), more.begin(), more.end());
     EXPECT_THAT(refusal(opener, changed), HasSubstr("changed")) << "byte " << at;

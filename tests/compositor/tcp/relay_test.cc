@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Applications and nodes that meet over TCP: images are those of a Unix socket, a line that is cut for a
-// while goes on where it was, and one that is gone ends both sides.
+// Applications and nodes connected over TCP: images are those of a Unix socket, a connection that pauses for a
+// while continues, and one that is lost ends both sides.
 #include "compositor/transport/tcp/relay.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ class RelayTest : public NodeGroupTest {
     NodeGroupTest::TearDown();
   }
 
-  /// What an application is given that is linked over TCP.
+  /// Returns the service of an application that is connected over TCP.
   RenderService& connect_over(const TcpAddress& address, const ConnectionRequest& connection_request = {}) {
     const std::string path = folder_ / "relay";
     const FileDescriptor listener = listen_at(path);
@@ -69,7 +69,7 @@ class RelayTest : public NodeGroupTest {
   }
 
   milliseconds connection_patience_ = limits::connection_patience;
-  /// Of the far end, if it is another.
+  /// Of the far end, if different.
   std::optional<milliseconds> far_patience_;
   const Credentials secret_{Secret(std::as_bytes(std::span("sixteen bytes or more")))};
   std::vector<std::jthread> carriers_;
@@ -86,8 +86,8 @@ class RelayTest : public NodeGroupTest {
       },
       [](const std::string& line) { std::printf("%s\n", line.c_str()); });
   std::jthread listener_thread_;
-  std::mutex why_mutex_;  // an application that is gone may end beside the next one
-  std::string why_;       ///< the last one has ended; to be read once all have
+  std::mutex why_mutex_;  // the end of one application may overlap with that of the next
+  std::string why_;       ///< why the last one has ended; to be read once all have
   std::vector<std::jthread> application_;
   std::unique_ptr<RenderService> service_;
 };
@@ -107,13 +107,13 @@ TEST_F(RelayTest, ImagesAreThoseOfAUnixSocketToTheBit) {
     const volume::Image expected = whole_image(here->render(request), request);
     request.volume = 8;
     EXPECT_EQ(whole_image(there.render(request), request).rgba, expected.rgba);
-    // A larger window: new memory at both ends.
+    // A larger window: new image buffers at both ends.
     request = volume::testing::request_for(other, volume::testing::usual_camera(301, 203), 301, 203, 50);
     const volume::Image large = whole_image(there.render(request), request);
     request.volume = texture.description.id;
     EXPECT_EQ(whole_image(here->render(request), request).rgba, large.rgba);
   }
-  // A refusal comes through as one, and the connection goes on.
+  // A refusal arrives as one, and the connection continues.
   auto unknown = some_request(texture);
   unknown.volume = 99;
   EXPECT_THROW(there.render(unknown), RequestRefused);
@@ -185,7 +185,7 @@ TEST_F(RelayTest, WhoRestsForLongerThanALineMayBeSilentIsStillThere) {
 TEST_F(RelayTest, ALineThatIsSilentIsGivenUpAndSaidSo) {
   start(1);
   connection_patience_ = milliseconds(2000);
-  far_patience_ = milliseconds(20000);  // so that it is not the far end that gives up first
+  far_patience_ = milliseconds(20000);  // so that the far end does not give up first
   Line line(listener_.address());
   const Texture texture = some_texture();
   RenderService& there = connect_over(line.address());
@@ -212,7 +212,7 @@ TEST_F(RelayTest, ALineThatIsGoneIsALostService) {
 }
 
 TEST_F(RelayTest, AClientThatWouldBeTheNodesIsSentAway) {
-  // Before there are any.
+  // Before there is a node group.
   TcpConnection tcp(connect_tcp(listener_.address(), secret_, {}, soon()), service_protocols,
                     limits::max_message_bytes);
   const std::vector<std::byte> hello = encode(Hello{});
@@ -239,11 +239,11 @@ TEST_F(RelayTest, AnApplicationThatLeavesEndsItsWayThrough) {
   EXPECT_TRUE(eventually([&] { return open_descriptors() <= before; })) << open_descriptors() << " " << before;
 }
 
-/// An application's end of a relay, and the other end of its connection.
+/// An application's end of a relay, and the far end of its connection over TCP.
 class LongMessageTest : public ::testing::Test {
  protected:
   LongMessageTest() {
-    // Nothing is gained by compressing it.
+    // Cannot be compressed.
     std::generate(texels_.begin(), texels_.end(),
                   [random = std::mt19937(1)]() mutable { return std::byte(random()); });
     std::array<int, 2> ends{};
@@ -292,7 +292,7 @@ class LongMessageTest : public ::testing::Test {
 #endif
   const FileDescriptor listening_ = listen_at(TcpAddress{"127.0.0.1", 0});
   Line line_{own_address(listening_.get())};
-  /// More than sockets keep.
+  /// More than sockets buffer.
   std::vector<std::byte> texels_ = std::vector<std::byte>(std::size_t(64) << 20);
   std::optional<Connection> application_;
   std::optional<TcpConnection> far_;
@@ -302,7 +302,7 @@ class LongMessageTest : public ::testing::Test {
   std::jthread far_lives_;
 };
 
-/// So that an application that waits for its answer waits for the GL server, and not for a line.
+/// An application that waits for its answer must wait for the GL server, not for the connection.
 TEST_F(LongMessageTest, LeavesAnApplicationAsALineTakesIt) {
   // For longer than either end waits for the other.
   line_.set_bytes_per_second(double(texels_.size()) / (1.4e-3 * double(patience_.count())));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Handshakes within a test, and sockets over TCP on this machine.
+// Handshakes within a test, and TCP sockets on this machine.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,13 +20,13 @@ inline Credentials secret_of(const std::string& text) {
   return Credentials(Secret(std::as_bytes(std::span(text))));
 }
 
-/// What the server answers to a client's first words.
+/// Returns the server's answer to a client's hello.
 inline std::vector<std::byte> challenge_to(ServerHandshake& server, std::span<const std::byte> hello) {
   server.answer(hello.first(hello_bytes));
   return server.answer(hello.subspan(hello_bytes));
 }
 
-/// Of the client, and of the server.
+/// Returns the keys of the client and of the server.
 inline std::pair<SessionKeys, SessionKeys> keys_of_session(const Credentials& of_client,
                                                            const Credentials& of_server) {
   ClientHandshake client(of_client, {});

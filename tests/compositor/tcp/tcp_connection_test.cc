@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Links whose other end is busy, and such whose other end is gone.
+// Connections whose other end is busy, and connections whose other end has gone.
 #include "compositor/transport/tcp/tcp_connection.h"
 
 #include <gmock/gmock.h>
@@ -22,11 +22,11 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
-/// More than lines and machines keep on the way.
+/// More than connections and machines buffer.
 constexpr std::size_t much = std::size_t(64) << 20;
 constexpr milliseconds patience(600);
 
-/// Nothing is gained by compressing it.
+/// Cannot be compressed.
 std::vector<std::byte> noise() {
   std::vector<std::byte> bytes(much);
   std::generate(bytes.begin(), bytes.end(),
@@ -43,7 +43,7 @@ class TcpConnectionTest : public ::testing::Test {
     far_.emplace(AuthenticatedSocket{std::move(far), far_keys}, service_protocols, 2 * much, patience);
   }
 
-  /// Until its thread is asked to stop.
+  /// Sends signs of life until its thread is asked to stop.
   std::jthread far_says_that_it_is_there() {
     return std::jthread([this](const std::stop_token& stop) {
       while (!stop.stop_requested()) {
@@ -94,7 +94,7 @@ TEST_F(TcpConnectionTest, WhoOnlySaysThatHeIsThereSendsNoMessage) {
   EXPECT_EQ(near_->received().messages, 1U);
 }
 
-/// Somebody on the way, between two connections.
+/// An attacker between two connections.
 class TamperedConnectionTest : public ::testing::Test {
  protected:
   TamperedConnectionTest() {
@@ -111,7 +111,7 @@ class TamperedConnectionTest : public ::testing::Test {
     const Bytes payload = std::as_bytes(std::span(text));
     near_->send(NodeMessage::add_texels, 1, {&payload, 1});
   }
-  /// All that is on the way from the near end.
+  /// Returns what the near end has sent.
   std::vector<std::byte> intercepted() {
     std::vector<std::byte> bytes(1 << 16);
     EXPECT_TRUE(wait_until_ready(near_line_.get(), POLLIN, Clock::now() + std::chrono::seconds(10)));
@@ -122,7 +122,7 @@ class TamperedConnectionTest : public ::testing::Test {
   void hand_on(std::span<const std::byte> bytes) {
     EXPECT_EQ(::send(far_line_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL), ssize_t(bytes.size()));
   }
-  /// Why the far end ends the session; empty: it has got a message.
+  /// Returns why the far end ends the session; empty if it has received a message.
   std::string end_of_session() {
     try {
       far_->receive();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What travels over TCP comes out as it went in, whatever pieces it arrives in, and what cannot be is refused.
+// Messages over TCP arrive as they were sent, in pieces of any size, and malformed ones are refused.
 #include "compositor/transport/tcp/tcp_message_reader.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ Buffer noise(std::size_t size, unsigned seed) {
   return bytes;
 }
 
-/// As texels are: near their neighbours.
+/// Like texels: similar to their neighbours.
 Buffer smooth(std::size_t size) {
   Buffer bytes(size);
   for (std::size_t i = 0; i < size; ++i) bytes[i] = std::byte((i / 300) & 0xff);
@@ -38,7 +38,7 @@ void append(Buffer& to, std::span<const std::byte> bytes) {
   to.insert(to.end(), bytes.begin(), bytes.end());
 }
 
-/// A message in blocks of at most `block_bytes`.
+/// Returns a message as it is sent, in blocks of at most `block_bytes`.
 Buffer travelling(MessageType type, std::span<const std::byte> payload, Codec codec, std::size_t block_bytes) {
   MessageHeader header;
   header.type = type;
@@ -60,7 +60,7 @@ Buffer travelling(MessageType type, std::span<const std::byte> payload, Codec co
   return bytes;
 }
 
-/// In pieces of at most `most` bytes.
+/// Reads `bytes` in pieces of at most `most` bytes.
 std::vector<Message> read(std::span<const std::byte> bytes, std::size_t most, std::uint64_t max_payload) {
   TcpMessageReader reader(service_protocols, max_payload);
   std::vector<Message> messages;
@@ -122,7 +122,7 @@ TEST(TcpMessageReader, NothingIsBelievedThatCannotBe) {
   EXPECT_THROW(read(with_head(BlockHead::of(1000, 1000, Codec::lz4)), 64, 1 << 20), MalformedMessage);
   EXPECT_THROW(read(with_head(BlockHead::of(1000, 999, Codec::none)), 64, 1 << 20), MalformedMessage);
   EXPECT_THROW(read(with_head(BlockHead::of(1000, 10, Codec(7))), 64, 1 << 20), MalformedMessage);
-  // Each byte of the heads and of a compressed block changed: no crash, and never a message that is longer.
+  // A change of any byte of the heads or of a compressed block causes no crash, and never a longer message.
   for (std::size_t at = 0; at < good.size(); ++at) {
     Buffer changed = good;
     changed[at] ^= std::byte(0x41);
@@ -130,7 +130,7 @@ TEST(TcpMessageReader, NothingIsBelievedThatCannotBe) {
       for (const Message& message : read(changed, 64, 1 << 20))
         EXPECT_LE(message.payload.size(), payload.size());
     } catch (const MalformedMessage&) {
-      // As it should.
+      // As expected.
     }
   }
 }
@@ -141,7 +141,7 @@ TEST(CodecChoice, FastLinesCarryBlocksAsTheyAreAndSlowOnesCompressed) {
   EXPECT_EQ(choice.best(10e9), Codec::none);
   EXPECT_NE(choice.best(10e6), Codec::none);
   EXPECT_EQ(choice.best(1e6), Codec::zstd);
-  // What does not get shorter is left alone, and tried again only now and then.
+  // Blocks that do not get shorter are sent unchanged, and compressed again only now and then.
   int tried = 0;
   for (int block = 0; block < 1000; ++block) {
     const Codec codec = choice.best(10e6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linked with whichever library the build says, calls glClear.
+// Linked with the library that the build selects; calls glClear.
 #include <stdio.h>
 
 extern "C" void glClear(unsigned mask);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// names [LIBRARY…]: opens the libraries in that order, uses each so that its driver is loaded, then says for
-// every one which file a function of it comes from. Built without libraries and linked with each of them.
+// names [LIBRARY...]: opens the libraries in that order, prints for each the file that a function of it comes
+// from, and calls the function, so that the driver is loaded. Built with no library, and with each of them.
 #include <dlfcn.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program that never touches OpenGL, though it opens a library: says which files are mapped.
+// A program that never uses OpenGL, but opens another library; prints the mapped files.
 #include <dlfcn.h>
 #include <stdio.h>
 

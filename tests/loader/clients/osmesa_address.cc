@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens OSMesa, and asks OSMesaGetProcAddress for the rest.
+// Opens OSMesa, and gets the other functions from OSMesaGetProcAddress.
 #include <dlfcn.h>
 #include <stdio.h>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// plugin_host PLUGIN [deep]: opens a plugin, which may have its own OpenGL in front with RTLD_DEEPBIND, and
-// draws.
+// plugin_host PLUGIN [deep]: opens a plugin, with `deep` by RTLD_DEEPBIND (its own libraries first), and draws.
 #include <dlfcn.h>
 #include <stdio.h>
 

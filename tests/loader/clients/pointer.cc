@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A library with a global variable named like the function that it will point to, as some loaders have.
+// A library with a global variable named like the function that it will point to, as in some OpenGL loaders.
 #include <dlfcn.h>
 
 #define EXPORTED extern "C" __attribute__((visibility("default")))

@@ -11,9 +11,8 @@
 
 namespace understudy::spu {
 
-/// Returns the reach in texels of the volume along `axis`; null if the ray does not show it.
-std::optional<double> gradient_reach_along(SlopeProbe& slopes, const LitRay& ray, const volume::Light& light,
-                                           std::size_t axis);
+/// Whether gradients reach as far along `axis` as `light` has it; true if the ray does not show it.
+bool still_reaches(SlopeProbe& slopes, const LitRay& ray, const volume::Light& light, std::size_t axis);
 
 /// Returns the reach in texels of the volume along each axis; axes that the ray does not show get the largest
 /// reach of the others. Null if a reach is outside the recognised range (0.2 to 8 texels).

@@ -481,17 +481,14 @@ bool still_lit(const MarchContext& measured, FieldProbe& probe, const ProxyBox& 
 
 bool gradients_still_reach(const MarchContext& measured, const ProxyBox& box, const March& march,
                            std::span<const std::size_t> axes) {
-  constexpr double same = 0.1;  // of a texel
   FieldProbe probe(measured);
   if (!probe.complete() || !held_still(measured, probe, march)) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   SlopeProbe slopes(measured, probe, march);
   const auto ray = ray_of_half_seen_value(measured, probe, slopes, rays, march);
   if (!ray) return false;
-  return std::ranges::all_of(axes, [&](std::size_t axis) {
-    const auto reach = gradient_reach_along(slopes, *ray, *march.light, axis);
-    return !reach || std::abs(*reach - march.light->reach[axis]) <= same;
-  });
+  return std::ranges::all_of(axes,
+                             [&](std::size_t axis) { return still_reaches(slopes, *ray, *march.light, axis); });
 }
 
 }  // namespace understudy::spu

@@ -2,6 +2,7 @@
 // What is stored about the ray caster of one volume.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ struct KnownMarch {
   /// The last few. The march equals the last one, or is derived from it by a factor of its steps. (If it were
   /// derived from march to march, opacities that long steps make nearly 1 would be lost.)
   std::vector<MeasuredMarch> measured;
+  std::uint64_t derived = 0;      ///< how often the march was derived so
   std::vector<MeasuredWay> ways;  ///< of views that left its steps open, under the same steps
   CameraFollowers followers;
   volume::Matrix4 camera{};          ///< of its last image, from texture to clip coordinates

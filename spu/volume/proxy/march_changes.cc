@@ -52,6 +52,21 @@ std::optional<bool> samples_lie_as_said(const MarchContext& measured, const Marc
   return have_as_many(counted, march.steps);
 }
 
+/// Returns what the ray through the middle shows of the field of each value, according to `march`; no fragments
+/// if that ray misses the box.
+std::vector<Rgba> predicted_rays(const March& march, const RaysThroughBox& rays,
+                                 const std::vector<float>& values) {
+  const auto middle = rays.middle();
+  const auto way = rays.way(middle[0], middle[1]);
+  std::vector<Rgba> predicted;
+  for (const float value : values) {
+    predicted.push_back(way ? ray_of(march, even_sample(march, value),
+                                     samples_of_length(march.steps, steps_of_way(march.steps, *way)))
+                            : Rgba{0, 0, 0, no_fragment});
+  }
+  return predicted;
+}
+
 }  // namespace
 
 std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box) {
@@ -193,10 +208,11 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
             : 0;
   }
   if (looked_at.values > 0 && agreeing < enough) return false;
-  if (march.light && !still_lit(measured, probe, box, march)) return false;
+  if (looked_at.light && march.light && !still_lit(measured, probe, box, march)) return false;
   // Under the white table, no other check shows that gradient opacity has been turned on or off.
   if (fades_by_gradient(march) == measured.tables_of_gradients.empty()) return false;
-  if (fades_by_gradient(march) && !still_fades_by_gradient(measured, probe, box, march)) return false;
+  if (looked_at.light && fades_by_gradient(march) && !still_fades_by_gradient(measured, probe, box, march))
+    return false;
   if (is_black_where_even(march) && !values.empty() &&
       !shows_facing_colours(measured, probe, box, march, values))
     return false;
@@ -213,8 +229,10 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
 
 bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box,
                   const PlacesLookedAt& looked_at) {
-  if (march.light && !gradients_still_reach(measured, box, march, looked_at.axes_of_gradients)) return false;
-  if (!box.cuts.empty()) return true;
+  if (march.light && !looked_at.axes_of_gradients.empty() &&
+      !gradients_still_reach(measured, box, march, looked_at.axes_of_gradients))
+    return false;
+  if (!looked_at.samples || !box.cuts.empty()) return true;
   if (march.shows_one_colour())
     return !march.steps_seen || samples_lie_as_said(measured, march, box).value_or(true);
   FieldProbe probe(measured);
@@ -224,7 +242,10 @@ bool still_placed(const MarchContext& measured, const March& march, const ProxyB
   std::vector<float> values = values_over(measured.range, looked_at.values);
   values.push_back(march.translucent);
   const auto middle = rays.middle();
-  const auto seen = seen_values(values, probe.at(middle[0], middle[1], values));
+  // Colours without the shader's background are known of rays that were drawn only.
+  const auto seen =
+      seen_values(values, looked_at.predicted && !march.background ? predicted_rays(march, rays, values)
+                                                                   : probe.at(middle[0], middle[1], values));
   SplitBands bands = looked_at.bands;
   bands.across_all_axes = march.space.of_whole_box || march.steps.counted_from;
   const auto split = split_rays(measured, probe, march, box, seen, bands);

@@ -31,6 +31,7 @@ struct RaysLookedAt {
   int values = 8;       ///< evenly spread over the table, each on short rays
   double offset = 0.5;  ///< 0 to 1: where the first value lies, in units of the distance between two
   bool long_ray = true;
+  bool light = true;  ///< and gradient opacity, on slopes
 };
 
 /// Whether a few rays through constant fields still look as `march` predicts.
@@ -39,7 +40,9 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
 
 /// How closely the positions of samples are checked, and the reach of gradients.
 struct PlacesLookedAt {
-  int values = 32;  ///< from which two that can be told apart are chosen
+  bool samples = true;
+  int values = 32;         ///< from which two that can be told apart are chosen
+  bool predicted = false;  ///< by what the march predicts of their rays, instead of by drawing these
   SplitBands bands{};
   std::vector<std::size_t> axes_of_gradients{0, 1, 2};
 };

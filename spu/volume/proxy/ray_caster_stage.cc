@@ -107,21 +107,32 @@ double offset_of_values(std::uint64_t frame) {
   return turns - std::floor(turns);
 }
 
-/// What to probe when the camera has moved, as in every frame while somebody turns a volume: half of the checks
-/// in each of two frames, with other values each time. If a step may have changed, always a long ray: short
-/// ones have as many samples under a step that is a little longer.
+/// What to probe when the camera has moved, as in every frame while somebody turns a volume: values, a long ray
+/// and light in turn, with other values each time. If a step may have changed, always a long ray: short ones
+/// have as many samples under a step that is a little longer.
 RaysLookedAt rays_looked_at(const March& march, bool turned, BesideChange beside, std::uint64_t frame) {
   if (!turned || beside == BesideChange::alone) return {};
-  const bool values = march.shows_one_colour() || frame % 2 == 0;
+  const std::uint64_t turn = frame % (march.light ? 3 : 2);
+  const bool values = turn == 0 || (march.shows_one_colour() && !march.light);
   return {.values = values ? 3 : 0,
           .offset = offset_of_values(frame),
-          .long_ray = !values || beside == BesideChange::with_camera};
+          .long_ray = turn == 1 || beside == BesideChange::with_camera,
+          .light = turn == 2};
 }
 
-/// What to check when steps have another length, as in every frame while somebody turns a volume in VTK, and
-/// nothing else is known to be new: another axis each time.
-PlacesLookedAt few_places(std::uint64_t frame) {
-  return {.values = 8, .bands = {.number = 2, .halves = true}, .axes_of_gradients = {std::size_t(frame % 3)}};
+/// What to check when steps have another length, as in many frames while somebody turns a volume in VTK, and
+/// nothing else is known to be new: the positions of samples, and in turn with them, of a march with light, how
+/// far gradients reach, along another axis each time. `derived`: how often there were other lengths.
+PlacesLookedAt few_places(const March& march, std::uint64_t derived) {
+  PlacesLookedAt few{.values = 8,
+                     .predicted = true,
+                     .bands = {.columns_of_middle = 128, .height_of_middle = offset_of_values(derived)},
+                     .axes_of_gradients = {}};
+  if (march.light && derived % 2 != 0) {
+    few.samples = false;
+    few.axes_of_gradients = {std::size_t(derived / 2 % 3)};
+  }
+  return few;
 }
 
 /// Appends the march as the last one measured.
@@ -413,13 +424,15 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
   std::vector<TableContents> tables = table_contents(context_, draw.run, draw.tables_of_samples);
   std::optional<March> again = with_other_steps(draw, box, inputs, tables);
   const bool derived = again.has_value();
+  if (derived) ++known.derived;
   // Constant fields, by which a table is measured, do not show the step of an extreme or a mean.
   const bool step_unknown = march && march->shows_one_colour() && steps_differ(known.inputs, inputs);
   if (march && !again && !step_unknown && !draw.samples_move_samples)
     again = with_new_table(draw.measured(), *march, box);
   // Counts of samples do not show noise that was turned on.
   if (again && !only_tables_differ(known.inputs, inputs) &&
-      !still_placed(draw.measured(), *again, box, derived ? few_places(account_.frames()) : PlacesLookedAt{}))
+      !still_placed(draw.measured(), *again, box,
+                    derived ? few_places(*again, known.derived) : PlacesLookedAt{}))
     again.reset();
   march = again;
   if (!again) {

@@ -227,6 +227,46 @@ void add_other_axes(const volume::Box& box, const volume::Vec3& way,
   }
 }
 
+/// Returns the pixels of the viewport that bound the box, all of which must be in front of the eye.
+volume::Rect pixels_of(const FieldProbe& probe, const ProxyBox& box) {
+  std::array<double, 2> low{1, 1};
+  std::array<double, 2> high{-1, -1};
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    volume::Vec3 place = box.region.low;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if ((corner >> axis & 1) != 0) place[axis] = box.region.high[axis];
+    }
+    const volume::Vec4 clip = volume::transform_point(box.camera.texture_to_clip, place);
+    for (std::size_t k = 0; k < 2; ++k) {
+      low[k] = std::min(low[k], clip[k] / clip[3]);
+      high[k] = std::max(high[k], clip[k] / clip[3]);
+    }
+  }
+  const int left = probe.column_at(low[0]);
+  const int bottom = probe.row_at(low[1]);
+  return {left, bottom, probe.column_at(high[0]) + 1 - left, probe.row_at(high[1]) + 1 - bottom};
+}
+
+std::vector<volume::Rect> pixels_of(const SplitBands& bands, const FieldProbe& probe, const ProxyBox& box,
+                                    const std::array<double, 2>& middle) {
+  constexpr int rows = 2;
+  const int highest_row = std::max(0, probe.height() - rows);
+  if (bands.columns_of_middle > 0) {
+    const volume::Rect whole = pixels_of(probe, box);
+    const int columns = std::min(bands.columns_of_middle, whole.width);
+    const int left =
+        std::clamp(probe.column_at(middle[0]) - columns / 2, whole.x, whole.x + whole.width - columns);
+    const int row = whole.y + int((0.25 + 0.5 * bands.height_of_middle) * whole.height);
+    return {{left, std::min(row, highest_row), columns, rows}};
+  }
+  std::vector<volume::Rect> pixels;
+  for (int band = 0; band < bands.number; ++band) {
+    const int row = std::clamp((2 * band + 1) * probe.height() / (2 * bands.number), 0, highest_row);
+    pixels.push_back({0, row, probe.width(), rows});
+  }
+  return pixels;
+}
+
 }  // namespace
 
 std::vector<SeenValue> seen_values(const std::vector<float>& values, const std::vector<Rgba>& rays) {
@@ -265,12 +305,7 @@ std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& prob
   if (fields.empty()) return {};
   if (bands.across_all_axes) add_other_axes(box.region, *way, fields);
   SplitCounting counting(probe, contrast->amount, premultiplied_already(measured, march), fields);
-  const int columns = bands.halves ? (probe.width() + 1) / 2 : probe.width();
-  for (int band = 0; band < bands.number; ++band) {
-    const int row =
-        std::clamp((2 * band + 1) * probe.height() / (2 * bands.number), 0, std::max(0, probe.height() - 2));
-    counting.add({band % 2 == 0 ? 0 : probe.width() - columns, row, columns, 2});
-  }
+  for (const volume::Rect& pixels : pixels_of(bands, probe, box, middle)) counting.add(pixels);
   return counting.counted();
 }
 

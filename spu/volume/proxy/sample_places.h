@@ -37,9 +37,11 @@ struct SeenValue {
 
 /// Bands of two rows each, in which rays are counted.
 struct SplitBands {
-  int number = 12;
-  bool halves = false;          ///< of rows, left and right in turn: rays of all lengths, but half as many
-  bool across_all_axes = true;  ///< false: only planes perpendicular to the axis along which rays go farthest
+  int number = 12;  ///< evenly spread over the viewport, as wide as it is
+  /// In place of these, one band of at most this many columns that crosses the middle of the box; 0: none.
+  int columns_of_middle = 0;
+  double height_of_middle = 0.5;  ///< 0 to 1: where it crosses, between a quarter and three of the box's height
+  bool across_all_axes = true;    ///< false: only planes perpendicular to the axis along which rays go farthest
 };
 
 std::vector<SeenValue> seen_values(const std::vector<float>& values, const std::vector<volume::Rgba>& rays);

@@ -245,6 +245,10 @@ double SlopeProbe::reach_in_stripes(std::size_t axis, double part) const {
   return part * (counts_texels() ? FieldProbe::field_texels : size_[axis]);
 }
 
+double SlopeProbe::part_of_stripes(std::size_t axis, double texels) const {
+  return texels / (counts_texels() ? FieldProbe::field_texels : size_[axis]);
+}
+
 double SlopeProbe::allowed_steepness(const LitRay& ray) const {
   double least = march_.slope_steepness;
   for (const float value : ray.values)

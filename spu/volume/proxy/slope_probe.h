@@ -107,6 +107,8 @@ class SlopeProbe {
   /// Returns how many texels of the volume along an axis `part` is, a part of texture space over which
   /// gradients reach in a field of stripes.
   double reach_in_stripes(std::size_t axis, double part) const;
+  /// The inverse of reach_in_stripes().
+  double part_of_stripes(std::size_t axis, double texels) const;
   /// Converts texels of the volume along an axis to texture space.
   double part_of_volume(std::size_t axis, double texels) const;
   /// By how much neighbouring stripes on the ray differ.

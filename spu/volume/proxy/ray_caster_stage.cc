@@ -126,7 +126,7 @@ RaysLookedAt rays_looked_at(const March& march, bool turned, BesideChange beside
 PlacesLookedAt few_places(const March& march, std::uint64_t derived) {
   PlacesLookedAt few{.values = 8,
                      .predicted = true,
-                     .bands = {.columns_of_middle = 128, .height_of_middle = offset_of_values(derived)},
+                     .bands = {.columns_of_middle = 32, .height_of_middle = offset_of_values(derived)},
                      .axes_of_gradients = {}};
   if (march.light && derived % 2 != 0) {
     few.samples = false;

@@ -86,7 +86,7 @@ class AssemblyWalk {
       return declare(instruction.operands);
     if (name == "KIL") return discard(instruction);
     if (name == "TEX" || name == "TXP" || name == "TXB") return fetch(instruction);
-    if (name == "SWZ") return swizzle(instruction.operands);
+    if (name == "SWZ") return swizzle(instruction);
     compute(instruction);
   }
 
@@ -113,7 +113,8 @@ class AssemblyWalk {
       bindings_[name] = binding;
   }
 
-  /// Returns the elements of "{program.env[0..3],state.matrix.mvp}": ranges are expanded, matrices are not.
+  /// Returns the elements of "{program.env[0..3],state.matrix.mvp}": ranges are expanded, matrices to their
+  /// rows.
   static std::vector<std::string> elements_of(const std::string& list) {
     std::vector<std::string> elements;
     std::string current;
@@ -133,7 +134,12 @@ class AssemblyWalk {
   static void add_range(std::vector<std::string>& elements, const std::string& binding) {
     const std::size_t dots = binding.find("..");
     const std::size_t bracket = binding.rfind('[', dots);
-    if (dots == std::string::npos || bracket == std::string::npos) return elements.push_back(binding);
+    if (dots == std::string::npos || bracket == std::string::npos) {
+      if (!binding.starts_with("state.matrix.") || binding.find(".row[") != std::string::npos)
+        return elements.push_back(binding);
+      for (int row = 0; row < 4; ++row) elements.push_back(binding + ".row[" + std::to_string(row) + "]");
+      return;
+    }
     const int last = std::stoi(binding.substr(dots + 2));
     const int first = std::stoi(binding.substr(bracket + 1));
     if (last - first > 4096) throw TooLarge();
@@ -148,7 +154,6 @@ class AssemblyWalk {
     if (bracket != std::string::npos && array != arrays_.end()) {
       const bool known = std::isdigit(static_cast<unsigned char>(name[bracket + 1])) != 0;
       const std::size_t index = known ? std::stoul(name.substr(bracket + 1)) : array->second.size();
-      // A matrix among the elements stands for all its rows.
       return index < array->second.size() ? array->second[index] : array->first + "[*]";
     }
     for (int hops = 0; hops < 8; ++hops) {
@@ -203,8 +208,10 @@ class AssemblyWalk {
     return scalar;
   }
 
-  void write(const std::string& text, const Value& value) {
-    const Operand target = operand_of(text);
+  /// Writes the result to the first operand. A clamped value is another than the one that was clamped.
+  void write(const Instruction& instruction, Value value) {
+    if (instruction.saturates) value = values_.componentwise(number_of("_SAT"), 4, std::array{value}, false);
+    const Operand target = operand_of(instruction.operands.at(0));
     const std::string name = resolved(target.name);
     Value whole = read_register(name);
     for (std::size_t i = 0; i < 4; ++i) {
@@ -222,7 +229,7 @@ class AssemblyWalk {
     for (std::size_t i = 1; i < instruction.operands.size(); ++i)
       operands.push_back(read(instruction.operands[i]));
     if (operands.empty()) throw Unsupported{"instruction " + instruction.name + " without operands"};
-    write(instruction.operands.at(0), result(instruction.name, *shape, operands));
+    write(instruction, result(instruction.name, *shape, operands));
   }
 
   Value result(const std::string& name, Shape shape, std::vector<Value> operands) {
@@ -253,7 +260,8 @@ class AssemblyWalk {
     return operators_.emplace(name, first_operator + std::uint32_t(operators_.size())).first->second;
   }
 
-  void swizzle(const std::vector<std::string>& operands) {
+  void swizzle(const Instruction& instruction) {
+    const std::vector<std::string>& operands = instruction.operands;
     const Value whole = read(operands.at(1));
     Value value;
     for (std::size_t i = 2; i < operands.size(); ++i) {
@@ -265,7 +273,7 @@ class AssemblyWalk {
         value.back() = values_.combine(ValueNumbers::component, std::array{value.back()});
     }
     value.resize(4);
-    write(operands[0], value);
+    write(instruction, value);
   }
 
   void discard(const Instruction& instruction) {
@@ -287,15 +295,17 @@ class AssemblyWalk {
       fetch.coordinate.push_back(values_.sets.members(values_.sets.join(coordinate[i].on, divided_by)));
       fetch.exact.push_back(fetch.projected ? std::nullopt : exact(coordinate[i]));
     }
-    if (fetch.type.shadow) fetch.modifiers = values_.sets.members(coordinate[2].on);
-    if (fetch.bias) fetch.modifiers = values_.sets.members(coordinate[3].on);
+    Set modifiers = FlowSets::empty;
+    if (fetch.type.shadow) modifiers = values_.sets.join(modifiers, coordinate[2].on);
+    if (fetch.bias) modifiers = values_.sets.join(modifiers, coordinate[3].on);
+    fetch.modifiers = values_.sets.members(modifiers);
     std::vector<ValueNumbers::Number> key{number_of(instruction.name), number_of(fetch.sampler),
                                           number_of(target)};
     const std::size_t used =
         fetch.projected || fetch.bias ? 4 : std::max(dimensions, std::size_t(fetch.type.shadow ? 3 : 1));
     for (std::size_t i = 0; i < used; ++i) key.push_back(coordinate[i].number);
     fetch.place = values_.numbers.of(ValueNumbers::place, key);
-    write(instruction.operands[0], texel(std::move(fetch)));
+    write(instruction, texel(std::move(fetch)));
   }
 
   Value texel(Fetch fetch) {

@@ -46,7 +46,8 @@ Instruction instruction_of(std::string_view statement, int line) {
   const auto first = std::ranges::find_if_not(statement, is_blank);
   const auto end = std::find_if(first, statement.end(), is_blank);
   Instruction instruction{.name = std::string(first, end), .operands = {}, .line = line};
-  if (instruction.name.ends_with("_SAT")) instruction.name.resize(instruction.name.size() - 4);
+  instruction.saturates = instruction.name.ends_with("_SAT");
+  if (instruction.saturates) instruction.name.resize(instruction.name.size() - 4);
   instruction.operands = split_operands({end, statement.end()});
   return instruction;
 }

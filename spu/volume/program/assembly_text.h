@@ -11,6 +11,7 @@ namespace understudy::spu::program {
 /// "MUL_SAT colour.xyz, value.x, table.wzyx" or a declaration, "TEMP value, colour".
 struct Instruction {
   std::string name;                   ///< without _SAT
+  bool saturates = false;             ///< with _SAT: the result is clamped to [0,1]
   std::vector<std::string> operands;  ///< as written, without blanks; of declarations, all that follows
   int line = 0;
 };

@@ -8,7 +8,11 @@ namespace understudy::spu {
 
 float largest_difference(const volume::Rgba& a, const volume::Rgba& b) {
   float largest = 0;
-  for (std::size_t c = 0; c < 4; ++c) largest = std::max(largest, std::abs(a[c] - b[c]));
+  for (std::size_t c = 0; c < 4; ++c) {
+    const float difference = std::abs(a[c] - b[c]);
+    if (std::isnan(difference)) return difference;
+    largest = std::max(largest, difference);
+  }
   return largest;
 }
 

@@ -126,7 +126,8 @@ float largest_difference(const ProbedImage& a, const ProbedImage& b) {
   float largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const float difference = largest_difference(a[i], b[i]);
-    if (!(difference <= largest)) largest = difference;
+    if (std::isnan(difference)) return difference;
+    largest = std::max(largest, difference);
   }
   return largest;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 
 #include "spu/volume/context/context.h"
@@ -69,9 +70,10 @@ InputRange range_of(const Capture& capture, const ProgramStages& stages) {
     for (std::size_t c = 0; c < std::size_t(input.components); ++c) {
       for (std::size_t at = capture.offsets[i] + c; at < capture.data.size(); at += capture.stride) {
         const float value = component_of(input, &capture.data[at]);
-        // A NaN replaces the bound, and no range covers it.
-        if (!(value >= range.low[i][c])) range.low[i][c] = value;
-        if (!(value <= range.high[i][c])) range.high[i][c] = value;
+        // A NaN becomes both bounds and stays; no range covers it.
+        if (std::isnan(value)) range.low[i][c] = range.high[i][c] = value;
+        if (value < range.low[i][c]) range.low[i][c] = value;
+        if (value > range.high[i][c]) range.high[i][c] = value;
       }
     }
   }

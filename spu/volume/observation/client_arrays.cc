@@ -41,11 +41,13 @@ T load(const std::byte* from) {
 float component(const std::byte* from, GLenum type, bool normalised) {
   switch (type) {
     case GL_BYTE:
-      return normalised ? float(load<std::int8_t>(from)) / 127.0F : float(load<std::int8_t>(from));
+      return normalised ? std::max(float(load<std::int8_t>(from)) / 127.0F, -1.0F)
+                        : float(load<std::int8_t>(from));
     case GL_UNSIGNED_BYTE:
       return normalised ? float(load<std::uint8_t>(from)) / 255.0F : float(load<std::uint8_t>(from));
     case GL_SHORT:
-      return normalised ? float(load<std::int16_t>(from)) / 32767.0F : float(load<std::int16_t>(from));
+      return normalised ? std::max(float(load<std::int16_t>(from)) / 32767.0F, -1.0F)
+                        : float(load<std::int16_t>(from));
     case GL_UNSIGNED_SHORT:
       return normalised ? float(load<std::uint16_t>(from)) / 65535.0F : float(load<std::uint16_t>(from));
     case GL_INT:

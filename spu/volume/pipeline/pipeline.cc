@@ -264,8 +264,19 @@ std::optional<std::string> read_rasterisation(const GlContext& context) {
   return std::nullopt;
 }
 
+/// Whether the application's framebuffer has depths. If not, all fragments pass the depth test (OpenGL 4.6,
+/// 17.3.4), and depths cannot be read.
+bool has_depth_buffer(const DispatchTable& gl) {
+  if (gl.GetFramebufferAttachmentParameteriv == nullptr) return true;
+  const bool window = state_value(gl, GL_DRAW_FRAMEBUFFER_BINDING) == 0;
+  GLint type = GL_NONE;
+  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, window ? GL_DEPTH : GL_DEPTH_ATTACHMENT,
+                                         GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, &type);
+  return type != GL_NONE;
+}
+
 std::optional<std::string> read_depth_test(const DispatchTable& gl, Pipeline& pipeline) {
-  pipeline.depth_test = gl.IsEnabled(GL_DEPTH_TEST);
+  pipeline.depth_test = gl.IsEnabled(GL_DEPTH_TEST) && has_depth_buffer(gl);
   if (!pipeline.depth_test) return std::nullopt;
   const GLint compare = state_value(gl, GL_DEPTH_FUNC);
   GLboolean write = GL_FALSE;

@@ -27,13 +27,14 @@ GLuint ProbeSurfaces::bind_framebuffer(int width, int height) {
   }
   gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   if (!fits) {
-    extent_ = {width, height};
+    // Growing only: windows of several shapes take turns.
+    extent_ = {std::max(extent_[0], width), std::max(extent_[1], height)};
     GLint application_renderbuffer = 0;
     gl_.GetIntegerv(GL_RENDERBUFFER_BINDING, &application_renderbuffer);
     gl_.BindRenderbuffer(GL_RENDERBUFFER, colour_);
-    gl_.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA32F, width, height);
+    gl_.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA32F, extent_[0], extent_[1]);
     gl_.BindRenderbuffer(GL_RENDERBUFFER, depth_);
-    gl_.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
+    gl_.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, extent_[0], extent_[1]);
     gl_.BindRenderbuffer(GL_RENDERBUFFER, GLuint(application_renderbuffer));
     gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
     gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);

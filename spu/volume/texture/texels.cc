@@ -2,6 +2,7 @@
 #include "spu/volume/texture/texels.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -258,6 +259,21 @@ GLenum minifying_filter(const GlContext& context, GLenum target, GLint sampler) 
   return filter == GL_NEAREST_MIPMAP_NEAREST || filter == GL_NEAREST_MIPMAP_LINEAR ? GL_NEAREST : GL_LINEAR;
 }
 
+/// Whether pixel transfer changes any component of what glGetTexImage() returns.
+bool changes_what_is_read(const DispatchTable& gl) {
+  GLboolean mapped = GL_FALSE;
+  gl.GetBooleanv(GL_MAP_COLOR, &mapped);
+  const auto differs = [&](GLenum name, GLfloat neutral) {
+    GLfloat value = neutral;
+    gl.GetFloatv(name, &value);
+    return value != neutral;
+  };
+  constexpr std::array<GLenum, 4> scales{GL_RED_SCALE, GL_GREEN_SCALE, GL_BLUE_SCALE, GL_ALPHA_SCALE};
+  constexpr std::array<GLenum, 4> biases{GL_RED_BIAS, GL_GREEN_BIAS, GL_BLUE_BIAS, GL_ALPHA_BIAS};
+  return mapped || std::ranges::any_of(scales, [&](GLenum scale) { return differs(scale, 1); }) ||
+         std::ranges::any_of(biases, [&](GLenum bias) { return differs(bias, 0); });
+}
+
 }  // namespace
 
 std::optional<std::string> describe_texture(const GlContext& context, GLenum target, int unit,
@@ -304,15 +320,7 @@ std::optional<std::string> describe_texture(const GlContext& context, GLenum tar
   if (description.base == BaseFormat::alpha) description.border[0] = description.border[3];
   if (description.grey) description.border[1] = description.border[2] = description.border[0];
   if (description.opaque) description.border[3] = 1;
-  if (!context.core) {
-    GLfloat scale = 1;
-    GLfloat bias = 0;
-    GLboolean mapped = GL_FALSE;
-    gl.GetFloatv(GL_RED_SCALE, &scale);
-    gl.GetFloatv(GL_RED_BIAS, &bias);
-    gl.GetBooleanv(GL_MAP_COLOR, &mapped);
-    if (scale != 1 || bias != 0 || mapped) return "pixel transfer changes what is read back";
-  }
+  if (!context.core && changes_what_is_read(gl)) return "pixel transfer changes what is read back";
   return std::nullopt;
 }
 

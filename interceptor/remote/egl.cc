@@ -6,6 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <atomic>
+#include <cstdint>
+
 #include "interceptor/remote/configs.h"
 #include "interceptor/remote/context.h"
 #include "interceptor/remote/egl_config.h"
@@ -35,6 +38,7 @@ struct Surface {
   int width;
   int height;
   int config;
+  int uses;  ///< one by the application, until it destroys the surface, and one wherever it is current
 };
 
 constinit pthread_mutex_t egl_lock = PTHREAD_MUTEX_INITIALIZER;
@@ -64,6 +68,33 @@ EglDisplay* display_of(EGLDisplay display) {
 
 Surface* surface_of(EGLSurface surface) {
   return static_cast<Surface*>(surface);
+}
+
+void acquire(std::uintptr_t surface) {
+  if (surface != 0) std::atomic_ref(reinterpret_cast<Surface*>(surface)->uses) += 1;
+}
+
+void release(std::uintptr_t surface) {
+  auto* const of = reinterpret_cast<Surface*>(surface);
+  if (of != nullptr && --std::atomic_ref(of->uses) == 0) free(of);
+}
+
+struct CurrentSurfaces {
+  std::uintptr_t draw = 0;
+  std::uintptr_t read = 0;
+};
+
+CurrentSurfaces current_surfaces() {
+  const RemoteThread& thread = remote_thread();
+  if (thread.system != WindowSystem::egl || thread.context == nullptr) return {};
+  return {thread.draw, thread.read};
+}
+
+void leave_surfaces() {
+  const CurrentSurfaces earlier = current_surfaces();
+  leave_remote_context();
+  release(earlier.draw);
+  release(earlier.read);
 }
 
 const RemoteConfig* config_of(EGLConfig config) {
@@ -236,7 +267,7 @@ EGLSurface new_surface(EGLConfig config, XID window) {
   if (config == nullptr) return failed(EGL_BAD_CONFIG, EGL_NO_SURFACE);
   auto* surface = static_cast<Surface*>(calloc(1, sizeof(Surface)));
   if (surface == nullptr) return failed(EGL_BAD_ALLOC, EGL_NO_SURFACE);
-  *surface = {window, 0, 0, config_of(config)->id};
+  *surface = {window, 0, 0, config_of(config)->id, 1};
   done();
   return surface;
 }
@@ -268,10 +299,7 @@ EGLSurface CreatePbufferSurface(EGLDisplay, EGLConfig config, const EGLint* attr
 
 EGLBoolean DestroySurface(EGLDisplay, EGLSurface surface) {
   if (surface == EGL_NO_SURFACE) return failed(EGL_BAD_SURFACE, EGL_FALSE);
-  // A surface that is current on this thread must stay valid; its few bytes are never freed.
-  const RemoteThread& thread = remote_thread();
-  const auto handle = reinterpret_cast<std::uintptr_t>(surface);
-  if (thread.draw != handle && thread.read != handle) free(surface);
+  release(reinterpret_cast<std::uintptr_t>(surface));
   return done();
 }
 
@@ -282,6 +310,7 @@ void extent_of_surface(const EglDisplay& display, const Surface& surface, int* w
 }
 
 EGLBoolean QuerySurface(EGLDisplay display, EGLSurface surface, EGLint attribute, EGLint* value) {
+  if (display == EGL_NO_DISPLAY) return failed(EGL_BAD_DISPLAY, EGL_FALSE);
   if (surface == EGL_NO_SURFACE) return failed(EGL_BAD_SURFACE, EGL_FALSE);
   int width = 0;
   int height = 0;
@@ -309,19 +338,25 @@ EGLBoolean QuerySurface(EGLDisplay display, EGLSurface surface, EGLint attribute
 
 EGLBoolean MakeCurrent(EGLDisplay display, EGLSurface draw, EGLSurface read, EGLContext context) {
   if (context == EGL_NO_CONTEXT) {
-    leave_remote_context();
+    leave_surfaces();
     return done();
   }
   if (display == EGL_NO_DISPLAY) return failed(EGL_BAD_DISPLAY, EGL_FALSE);
   const Xlib* x = xlib();
   if (display_of(display)->x != nullptr && x != nullptr) x->sync(display_of(display)->x, False);
-  enter_remote_context({WindowSystem::egl, static_cast<RemoteContext*>(context), display,
-                        reinterpret_cast<std::uintptr_t>(draw), reinterpret_cast<std::uintptr_t>(read)});
+  const CurrentSurfaces earlier = current_surfaces();
+  const CurrentSurfaces next{reinterpret_cast<std::uintptr_t>(draw), reinterpret_cast<std::uintptr_t>(read)};
+  acquire(next.draw);
+  acquire(next.read);
+  enter_remote_context(
+      {WindowSystem::egl, static_cast<RemoteContext*>(context), display, next.draw, next.read});
+  release(earlier.draw);
+  release(earlier.read);
   return done();
 }
 
 EGLBoolean ReleaseThread() {
-  leave_remote_context();
+  leave_surfaces();
   egl_thread = {};
   return EGL_TRUE;
 }
@@ -340,6 +375,7 @@ EGLSurface GetCurrentSurface(EGLint which) {
 }
 
 EGLBoolean SwapBuffers(EGLDisplay display, EGLSurface surface) {
+  if (display == EGL_NO_DISPLAY) return failed(EGL_BAD_DISPLAY, EGL_FALSE);
   if (surface == EGL_NO_SURFACE) return failed(EGL_BAD_SURFACE, EGL_FALSE);
   const Xlib* x = xlib();
   if (display_of(display)->x != nullptr && x != nullptr) x->flush(display_of(display)->x);

@@ -102,9 +102,12 @@ XVisualInfo* ChooseVisual(Display* display, int screen, int* attributes) {
       double_buffered = true;
     } else if (*attributes == GLX_STEREO) {
       return nullptr;
-    } else if (length + 4 < 64) {
-      wanted[length++] = attributes[0];
-      wanted[length++] = *++attributes;
+    } else {
+      const int name = *attributes;
+      const int value = *++attributes;
+      if (length + 4 >= 64) continue;
+      wanted[length++] = name;
+      wanted[length++] = value;
     }
   }
   if (!rgba) return nullptr;

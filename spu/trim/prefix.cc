@@ -32,6 +32,34 @@ GLenum buffer_binding(GLenum target) {
   }
 }
 
+/// The same of all targets to which glCopyBufferSubData() can copy.
+GLenum binding_for_copies(GLenum target) {
+  switch (target) {
+    case GL_COPY_READ_BUFFER:
+      return GL_COPY_READ_BUFFER_BINDING;
+    case GL_COPY_WRITE_BUFFER:
+      return GL_COPY_WRITE_BUFFER_BINDING;
+    case GL_PIXEL_PACK_BUFFER:
+      return GL_PIXEL_PACK_BUFFER_BINDING;
+    case GL_TEXTURE_BUFFER:
+      return GL_TEXTURE_BUFFER_BINDING;
+    case GL_TRANSFORM_FEEDBACK_BUFFER:
+      return GL_TRANSFORM_FEEDBACK_BUFFER_BINDING;
+    case GL_SHADER_STORAGE_BUFFER:
+      return GL_SHADER_STORAGE_BUFFER_BINDING;
+    case GL_ATOMIC_COUNTER_BUFFER:
+      return GL_ATOMIC_COUNTER_BUFFER_BINDING;
+    case GL_DRAW_INDIRECT_BUFFER:
+      return GL_DRAW_INDIRECT_BUFFER_BINDING;
+    case GL_DISPATCH_INDIRECT_BUFFER:
+      return GL_DISPATCH_INDIRECT_BUFFER_BINDING;
+    case GL_QUERY_BUFFER:
+      return GL_QUERY_BUFFER_BINDING;
+    default:
+      return buffer_binding(target);
+  }
+}
+
 /// The faces of a cube map are images of one texture.
 GLenum texture_target(GLenum image_target) {
   const bool face =
@@ -223,11 +251,11 @@ void Prefix::look_at_buffer(CallId call, const Record& record) {
   const auto word = [&](std::size_t p) { return word_at(record, p); };
   if ((call == CallId::BindBufferBase || call == CallId::BindBufferRange) && word(0) != GL_UNIFORM_BUFFER)
     mark(ObjectKind::buffer, GLuint(player_.here(ObjectKind::buffer, word(2))));
+  if (call == CallId::CopyNamedBufferSubData)
+    mark(ObjectKind::buffer, GLuint(player_.here(ObjectKind::buffer, word(1))));
   if (call == CallId::CopyBufferSubData) {
     GLint buffer = 0;
-    // Only targets whose binding is known here.
-    const GLenum binding = word(1) == GL_COPY_WRITE_BUFFER ? GLenum(GL_COPY_WRITE_BUFFER_BINDING)
-                                                           : buffer_binding(GLenum(word(1)));
+    const GLenum binding = binding_for_copies(GLenum(word(1)));
     if (binding != GL_NONE) player_.driver().GetIntegerv(binding, &buffer);
     mark(ObjectKind::buffer, GLuint(buffer));
   }

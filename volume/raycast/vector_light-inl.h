@@ -276,7 +276,7 @@ HWY_INLINE void light_up(const Brightness& at, const SegmentConstants& constants
     const Floats share = hn::MulAdd(constants.diffuse, bright, constants.ambient);
     const Floats white = hn::Mul(hn::Mul(constants.specular, gleam), hn::Broadcast<3>(colour));
     const Floats lit = hn::MulAdd(colour, share, white);
-    return constants.is_limited ? hn::Min(lit, hn::Mul(constants.brightest, hn::Broadcast<3>(colour))) : lit;
+    return constants.has_brightest ? hn::Min(lit, hn::Mul(constants.brightest, hn::Broadcast<3>(colour))) : lit;
   };
   const Floats first = shown(colours[0], hn::Broadcast<0>(at.diffuse), hn::Broadcast<0>(at.gleam));
   const Floats second = shown(colours[1], hn::Broadcast<1>(at.diffuse), hn::Broadcast<1>(at.gleam));

@@ -75,7 +75,7 @@ struct SegmentConstants : Constants {
     least_cosine = hn::Set(f, std::max(std::exp(-40 / exponent), 1e-30F));
     gleams = prepared_light->model.specular != std::array<float, 3>{};
     even = colour(prepared_light->model.even, 1);
-    is_limited = std::isfinite(prepared_light->model.brightest);
+    has_brightest = std::isfinite(prepared_light->model.brightest);
     const float most = prepared_light->model.brightest;
     brightest = colour({most, most, most}, 1);
     const std::vector<LightResponse>& response = prepared_light->model.response;
@@ -115,7 +115,7 @@ struct SegmentConstants : Constants {
   std::optional<unsigned> whole_shininess;
   bool gleams = false, two_sided = false;
   Floats even;  // factor for points without a gradient; components side by side
-  bool is_limited = false;
+  bool has_brightest = false;
   Floats brightest;                  // times opacity; components side by side
   const float* responses = nullptr;  // pairs of diffuse and specular; null: Blinn-Phong
   Floats half_last_response;

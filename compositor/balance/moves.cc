@@ -11,8 +11,6 @@ namespace understudy::compositor {
 
 using volume::TexelBox;
 
-namespace {}  // namespace
-
 TexelBox blocks_kept(const volume::VolumeDescription& volume, const TexelBox& cells) {
   if (volume::is_empty(cells)) return {};
   const TexelBox lattice = volume::cell_lattice(volume).box();

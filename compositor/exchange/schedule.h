@@ -62,8 +62,8 @@ Schedule schedule(Algorithm algorithm, std::span<const Rank> order, std::span<co
 /// instead of being gathered by rank 0 (Mueller, Strengert, Ertl 2006 describe both ways).
 void write_gathered(Schedule& schedule, const std::vector<bool>& reached_by);
 
-/// Returns the prime factors of `count`, with pairs of twos made fours: rounds of four cost a quarter of the
-/// latency of two rounds of two, and no more bytes.
+/// Returns the prime factors of `count`, with pairs of twos made fours: a round of four has
+/// three messages a rank where two rounds of two have two, but one wait instead of two, and no more bytes.
 std::vector<int> radix_factors(int count);
 
 }  // namespace understudy::compositor

@@ -28,13 +28,11 @@ class Group {
 
   int ranks() const { return ranks_; }
 
-  void send_control(Rank from, Rank to, std::span<const std::byte> bytes) {
-    send_control(from, to, QueuedMessage(bytes));
-  }
+  void send(Rank from, Rank to, std::span<const std::byte> bytes) { queue_up(from, to, QueuedMessage(bytes)); }
   void leave(Rank from, Rank to, std::span<const std::byte> bytes) {
     QueuedMessage message;
     message.left = bytes;
-    send_control(from, to, std::move(message));
+    queue_up(from, to, std::move(message));
   }
 
   /// `seen` is set if the message was left in place.
@@ -100,7 +98,7 @@ class Group {
     std::span<const std::byte> left;  ///< not empty: the message was left here
   };
 
-  void send_control(Rank from, Rank to, QueuedMessage message) {
+  void queue_up(Rank from, Rank to, QueuedMessage message) {
     const std::lock_guard lock(mutex_);
     queue(from, to).push_back(std::move(message));
     arrived_.notify_all();
@@ -143,7 +141,7 @@ class ThreadCommunicator : public Communicator {
       if (message.may_be_seen && group_.has_segment(rank_, message.bytes))
         group_.leave(rank_, message.to, message.bytes);
       else
-        group_.send_control(rank_, message.to, message.bytes);
+        group_.send(rank_, message.to, message.bytes);
     }
     for (const Incoming& message : incoming) {
       const std::size_t received =
@@ -163,11 +161,11 @@ class ThreadCommunicator : public Communicator {
       return;
     }
     for (Rank other = 0; other < size(); ++other)
-      if (other != root) group_.send_control(root, other, bytes);
+      if (other != root) group_.send(root, other, bytes);
   }
 
   void gather_to_all(std::span<const std::byte> mine, std::span<std::byte> all) override {
-    for (Rank other = 0; other < size(); ++other) group_.send_control(rank_, other, mine);
+    for (Rank other = 0; other < size(); ++other) group_.send(rank_, other, mine);
     for (Rank other = 0; other < size(); ++other)
       group_.take(other, rank_, all.subspan(std::size_t(other) * mine.size(), mine.size()));
     group_.clear_segments(rank_);

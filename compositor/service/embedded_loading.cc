@@ -7,6 +7,7 @@
 #include "compositor/service/loading_service.h"
 #include "compositor/service/loads.h"
 #include "compositor/service/rank_renderer.h"
+#include "compositor/service/worker_threads.h"
 #include "volume/brick/histogram.h"
 #include "volume/file/file_error.h"
 #include "volume/frame_counts.h"
@@ -79,6 +80,7 @@ class EmbeddedLoadingService : public LoadingService {
     return {figures};
   }
 
+  WorkerThreads threads_;
   RankRenderer renderer_{0, 1};
   Loads loads_{renderer_, 0};
   volume::Image image_;

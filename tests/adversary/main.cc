@@ -77,7 +77,7 @@ void run(const Arguments& arguments) {
 }
 
 Arguments parsed(std::span<char*> words) {
-  if (words.size() < 4)
+  if (words.size() < 4 || std::string(words[1]) != "run")
     throw std::runtime_error(
         "usage: adversary list | run NAME FOLDER [--frames N] [--edge N] [--exact] | show random_SEED");
   Arguments arguments{.name = words[2], .folder = words[3]};
@@ -95,6 +95,12 @@ Arguments parsed(std::span<char*> words) {
   return arguments;
 }
 
+void show(const std::string& name) {
+  const auto seed = seed_of(name);
+  if (!seed) throw std::runtime_error("only the programs of random_SEED can be shown, and not " + name);
+  std::cout << random_fragment_shader(*seed);
+}
+
 }  // namespace
 }  // namespace adversary
 
@@ -103,7 +109,7 @@ int main(int count, char** words) {
     if (count == 2 && std::string(words[1]) == "list")
       adversary::list();
     else if (count == 3 && std::string(words[1]) == "show")
-      std::cout << adversary::random_fragment_shader(adversary::seed_of(words[2]).value());
+      adversary::show(words[2]);
     else
       adversary::run(adversary::parsed({words, static_cast<std::size_t>(count)}));
     return 0;

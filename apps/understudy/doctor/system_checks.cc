@@ -212,8 +212,10 @@ Finding look_apart(const Check& check) {
   int status = 0;
   waitpid(probe, &status, 0);
   if (message.empty()) {
-    return {false, WIFSIGNALED(status) ? fmt::format("its library crashed: {}", strsignal(WTERMSIG(status)))
-                                       : std::string("its library ended the process")};
+    if (!WIFSIGNALED(status)) return {false, "its library ended the process"};
+    if (WTERMSIG(status) == SIGALRM)
+      return {false, fmt::format("its library did not answer within {} s", probe_seconds)};
+    return {false, fmt::format("its library crashed: {}", strsignal(WTERMSIG(status)))};
   }
   return {message.front() == '+', message.substr(1)};
 }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 namespace understudy::launcher {
-namespace {
 
 double share_done(std::span<const compositor::RankLoad> ranks) {
   std::uint64_t done = 0, all = 0;
@@ -14,8 +13,6 @@ double share_done(std::span<const compositor::RankLoad> ranks) {
   }
   return all == 0 ? 1.0 : double(done) / double(all);
 }
-
-}  // namespace
 
 std::string progress_text(std::span<const compositor::RankLoad> ranks) {
   constexpr int bar_width = 20;

@@ -10,6 +10,9 @@
 
 namespace understudy::launcher {
 
+/// Returns the share of the texels that all ranks have read, 0 to 1.
+double share_done(std::span<const compositor::RankLoad> ranks);
+
 /// For example "loading  42 % [########            ] 110 MiB read by 4 ranks".
 std::string progress_text(std::span<const compositor::RankLoad> ranks);
 /// The same for part `part`, counted from 0, of `parts`: "part 2 of 5: loading …".

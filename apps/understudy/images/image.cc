@@ -154,7 +154,7 @@ RgbaImage whole_window(const volume::ImageView& image, const volume::Rect& windo
   const auto row = 4 * std::size_t(image.rect.width);
   for (int y = 0; y < image.rect.height; ++y)
     std::copy_n(image.rgba.data() + std::size_t(y) * row, row,
-                whole.pixel(image.rect.x, window.height - 1 - (image.rect.y + y)));
+                whole.pixel(image.rect.x - window.x, window.height - 1 - (image.rect.y - window.y + y)));
   return whole;
 }
 

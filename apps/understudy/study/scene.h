@@ -89,7 +89,6 @@ class Scene {
   double reference_seconds() const { return reference_seconds_; }
 
  private:
-  void integrate_row(const volume::RenderRequest& one_voxel, std::span<std::array<double, 4>> row, int y);
   /// Returns the greatest change of opacity between samples that are one voxel apart.
   double greatest_change(const volume::RenderRequest& one_voxel, int x, int y) const;
   int pixel(int ray) const { return ray * stride_ + stride_ / 2; }

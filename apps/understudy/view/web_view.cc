@@ -36,15 +36,6 @@ constexpr std::size_t enough_rays = 256;
 /// Interval between progress messages while loading.
 constexpr std::chrono::milliseconds progress_interval{100};
 
-double part_done(const std::vector<compositor::RankLoad>& ranks) {
-  std::uint64_t done = 0, all = 0;
-  for (const compositor::RankLoad& rank : ranks) {
-    done += rank.texels_done;
-    all += rank.texels_in_all;
-  }
-  return all == 0 ? 1 : double(done) / double(all);
-}
-
 class WebView {
  public:
   WebView(const FileScene& scene, const ServiceMaker& make, const RankMemory& memory,
@@ -139,7 +130,7 @@ class WebView {
       if (stop_.stop_requested()) throw compositor::ServiceLost("stopped");
       if (said && Clock::now() - *said < progress_interval) return;
       said = Clock::now();
-      say(Readiness::loading, progress_text(ranks), part_done(ranks));
+      say(Readiness::loading, progress_text(ranks), share_done(ranks));
     });
     say(Readiness::ready, "", 1);
     const std::lock_guard lock(mutex_);

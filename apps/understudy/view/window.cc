@@ -107,6 +107,8 @@ class Window {
         return load();
       } catch (const compositor::ServiceLost& lost) {
         reason = lost.what();
+      } catch (const compositor::RequestRefused& refused) {
+        reason = refused.what();
       }
     }
   }

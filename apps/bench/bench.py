@@ -97,9 +97,10 @@ def main(names):
     folder.mkdir(parents=True, exist_ok=True)
     for name in names or BENCHMARKS:
         print(f"{name}: {machine()}; {instruction_set()}; {compiler()}", flush=True)
-        rows = BENCHMARKS[name](sizes) if sizes else BENCHMARKS[name]()
-        for row in rows:
-            print(text_of(row))
+        rows = []
+        for row in BENCHMARKS[name](sizes) if sizes else BENCHMARKS[name]():
+            print(text_of(row), flush=True)
+            rows.append(row)
         path = folder / (f"{name}-sizes.json" if sizes else f"{name}.json")
         path.write_text(json.dumps({"machine": machine(), "compiler": compiler(), "instruction_set": instruction_set(),
                                     "rows": rows}, indent=1), encoding="utf-8")

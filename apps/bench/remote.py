@@ -57,7 +57,7 @@ def server(folder, host, options=()):
             stdin=subprocess.DEVNULL, env={**os.environ, **viewers.SOFTWARE, "DISPLAY": ""})
         try:
             until = time.monotonic() + 30
-            while "and at" not in (folder / "serve.log").read_text(encoding="utf-8"):
+            while "also at" not in (folder / "serve.log").read_text(encoding="utf-8"):
                 if process.poll() is not None or time.monotonic() > until:
                     raise viewers.ViewerFailed((folder / "serve.log").read_text(encoding="utf-8"))
                 time.sleep(0.1)

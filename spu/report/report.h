@@ -55,7 +55,7 @@ std::string explanation_text(Processes processes);
 
 /// Writes `text` to a file beside `path` and renames that to `path`: readers see the old or the new file, never
 /// a part. Throws std::runtime_error with the path and the reason.
-void replace_file(const std::filesystem::path& path, const std::string& text);
+void replace_file(const std::filesystem::path& named, const std::string& text);
 
 /// Replaces `path` by a report about this process. Returns false if that failed, which is logged once.
 bool write_report_now(const std::string& path) noexcept;

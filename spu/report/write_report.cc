@@ -2,6 +2,8 @@
 // Writes reports to files.
 #include <fmt/format.h>
 #include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -9,27 +11,59 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
+#include <system_error>
 
 #include "compositor/logging/log.h"
 #include "spu/report/report.h"
 
 namespace understudy::spu {
 
-void replace_file(const std::filesystem::path& path, const std::string& text) {
+namespace {
+
+/// Returns where the user's link leads, or the path itself. Links of other users, who may have write access to
+/// the folder, are not followed.
+std::filesystem::path target_of(const std::filesystem::path& path) {
+  struct stat status {};
+  if (::lstat(path.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return path;
+  if (status.st_uid != 0 && status.st_uid != ::geteuid()) return path;
+  std::error_code broken;
+  const std::filesystem::path target = std::filesystem::weakly_canonical(path, broken);
+  return broken ? path : target;
+}
+
+/// Devices and pipes are written to, and not replaced by a file.
+bool is_replaceable(const std::filesystem::path& path) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode) || S_ISLNK(status.st_mode);
+}
+
+bool write_to(std::FILE* file, const std::string& text) {
+  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  return std::fclose(file) == 0 && written;
+}
+
+}  // namespace
+
+void replace_file(const std::filesystem::path& named, const std::string& text) {
   const auto fail = [&](const char* what) {
     throw std::runtime_error(
-        fmt::format("cannot {} the report {}: {}", what, path.string(), std::strerror(errno)));
+        fmt::format("cannot {} the report {}: {}", what, named.string(), std::strerror(errno)));
   };
+  const std::filesystem::path path = target_of(named);
+  if (!is_replaceable(path)) {
+    std::FILE* const there = std::fopen(path.c_str(), "we");
+    if (there == nullptr || !write_to(there, text)) fail("write");
+    return;
+  }
   // The folder may be writable by others: the name cannot be guessed, and no existing file or link is opened.
   std::uint64_t random = 0;
   if (getrandom(&random, sizeof random, 0) != ssize_t(sizeof random)) fail("name");
   const std::string beside = fmt::format("{}.{:016x}.part", path.string(), random);
   std::FILE* file = std::fopen(beside.c_str(), "wxe");
   if (file == nullptr) fail("write");
-  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  const bool closed = std::fclose(file) == 0;
-  if (!written || !closed || std::rename(beside.c_str(), path.c_str()) != 0) {
+  if (!write_to(file, text) || std::rename(beside.c_str(), path.c_str()) != 0) {
     const int reason = errno;
     std::remove(beside.c_str());
     errno = reason;

@@ -69,6 +69,16 @@ TEST(OpacityLimit, EndsLitRaysLikeOthers) {
   EXPECT_LE(difference(image_of(texture, request), unlit).max, 1e-5);
 }
 
+TEST(OpacityLimit, HoldsBesideSurfaces) {
+  const Texture texture = noise(describe({40, 40, 40}, TexelType::u8), 25);
+  RenderRequest request = limited_request(texture, 0.6F);
+  request.steps.emplace();
+  request.steps->metric = {60, 0, 0, 0, 60, 0, 0, 0, 60};
+  const Image alone = image_of(texture, request);
+  request.surfaces = {{-1000, {1, 1, 1, 1}}};  // which no ray meets
+  EXPECT_LE(difference(image_of(texture, request), alone).max, 1e-5);
+}
+
 TEST(OpacityLimit, LeavesOutWhatLiesBehind) {
   const Texture texture = noise(describe({19, 23, 13}, TexelType::u8), 23);
   RenderRequest request = limited_request(texture, 1);

@@ -96,7 +96,7 @@ class Volume:
             array = array.view(numpy.uint8)
         if array.dtype.kind not in "uif" or array.dtype.itemsize > 8:
             raise ValueError(f"an array of {array.dtype}; give integers or floats of up to 64 bits")
-        if array.dtype == numpy.float16:
+        if array.dtype.kind == "f" and array.dtype.itemsize == 2:  # in either byte order
             array = array.astype(numpy.float32)
         array = numpy.ascontiguousarray(array, dtype=array.dtype.newbyteorder("="))
         if len(spacing) != 3 or not all(float(distance) > 0 for distance in spacing):

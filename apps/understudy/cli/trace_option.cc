@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <exception>
+#include <filesystem>
+#include <stdexcept>
 
 #include "spu/chain_text.h"
 #include "spu/options.h"
@@ -16,6 +18,9 @@ void prepare_trace(RunArguments& arguments) {
   spu::Options options = spu::options_from_environment();
   for (const auto& [environment, value] : arguments.settings) spu::set_option(options, environment, value);
   // A process that finds an existing file records to another one.
+  if (std::filesystem::exists(arguments.trace) && !std::filesystem::is_regular_file(arguments.trace))
+    throw std::runtime_error(fmt::format("--trace {}: a trace can only be written to a file; give another name",
+                                         arguments.trace.string()));
   std::filesystem::remove(arguments.trace);
   const spu::UnitSetting trace{
       .name = "trace", .options = {{.name = "file", .value = std::filesystem::absolute(arguments.trace)}}};

@@ -326,9 +326,11 @@ int perform(FileDescriptor socket, const std::string& address) {
 
 std::unique_ptr<ChildProcess> start_gl_server(const Installation& installation,
                                               const std::filesystem::path& socket, Environment environment) {
+  // Ctrl-C in the terminal is the viewer's: one that handles it needs its OpenGL afterwards.
   auto server = std::make_unique<ChildProcess>(
       Command{.arguments = {installation.programs / "understudy", "gl-server", "--socket", socket},
-              .environment = std::move(environment)});
+              .environment = std::move(environment),
+              .own_group = true});
   const auto until = Clock::now() + patience_with_client;
   std::error_code unreadable;
   while (!std::filesystem::is_socket(socket, unreadable)) {

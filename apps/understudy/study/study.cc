@@ -91,9 +91,13 @@ std::vector<SceneDescription> scenes_of(const StudyArguments& arguments) {
     const std::size_t comma = given.rfind(',');
     const std::string file = given.substr(0, comma);
     const std::string table = comma == std::string::npos ? "grey" : given.substr(comma + 1);
-    const std::string name = fs::path(file).filename().string();
-    all.push_back(
-        {name.substr(0, name.find_first_of("._")), "table " + table, file, read_control_points(table), {}});
+    const std::string file_name = fs::path(file).filename().string();
+    const std::string stem = file_name.substr(0, file_name.find_first_of("._"));
+    // Results are kept by name: "engine", "engine-2" where a second volume or table has the same.
+    std::string name = stem;
+    for (int number = 2; std::ranges::find(all, name, &SceneDescription::name) != all.end(); ++number)
+      name = fmt::format("{}-{}", stem, number);
+    all.push_back({name, "table " + table, file, read_control_points(table), {}});
   }
   return all;
 }

@@ -15,10 +15,10 @@
 
 namespace understudy::launcher {
 
-constexpr std::size_t max_view_message_bytes = std::size_t(32) << 10U;
+constexpr std::size_t max_view_message_bytes = std::size_t(256) << 10U;  ///< holds as many control points
 constexpr int least_view_side = 16;
 constexpr int most_view_side = 4096;
-constexpr std::size_t max_view_control_points = 256;
+constexpr std::size_t max_view_control_points = 1024;
 constexpr double least_view_step = 0.25;  ///< voxels
 constexpr double most_view_step = 4;
 

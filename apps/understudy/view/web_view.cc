@@ -10,6 +10,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 
 #include "apps/understudy/file_scene/load_progress.h"
 #include "apps/understudy/view/page_messages.h"
@@ -46,7 +47,14 @@ class WebView {
         server_(address.host, address.port, random_digits(secret_bytes),
                 {[this](Viewer viewer) { join(viewer); },
                  [this](Viewer viewer, std::string_view text) { hear(viewer, text); },
-                 [this](Viewer viewer) { sent(viewer); }, [this](Viewer viewer) { leave(viewer); }}) {}
+                 [this](Viewer viewer) { sent(viewer); }, [this](Viewer viewer) { leave(viewer); }}) {
+    if (const std::size_t points = scene.image.control_points.control_points.size();
+        points > max_view_control_points)
+      throw std::invalid_argument(
+          fmt::format("a page edits transfer functions of at most {} control points, not of {}; thin the table "
+                      "out, or use the window (without --web)",
+                      max_view_control_points, points));
+  }
 
   const WebServer& server() const { return server_; }
 

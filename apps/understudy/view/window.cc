@@ -75,7 +75,7 @@ class Window {
       try {
         if (script_.frames > 0) {
           play(frame);
-          over_ = ++frame == script_.frames;
+          if (++frame == script_.frames) over_ = true;
         } else {
           live();
         }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // `understudy run` as seen by its user: the viewer's own exit status, one summary line, nothing left behind.
 // The viewers here are shell commands that do not use OpenGL.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -418,6 +420,24 @@ TEST_F(UnderstudyRun, AReportThatCannotBeWrittenIsToldBeforeTheViewerStarts) {
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.output, HasSubstr("cannot be written: No such file or directory"));
   EXPECT_FALSE(fs::exists(mark));
+}
+
+TEST_F(UnderstudyRun, PipesAreWrittenToAndNotReplaced) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  // Also opened for writing, so that nothing waits for the other end.
+  const int end = ::open(pipe.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  const Result reported = understudy("run --report " + pipe.string() + " -- true");
+  EXPECT_EQ(reported.status, 0) << reported.output;
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  std::array<char, 1> first{};
+  EXPECT_EQ(::read(end, first.data(), first.size()), 1);
+  EXPECT_EQ(first[0], '{');
+  const Result traced = understudy("run --trace " + pipe.string() + " -- true");
+  EXPECT_NE(traced.status, 0);
+  EXPECT_THAT(traced.output, HasSubstr("a trace can only be written to a file"));
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  ::close(end);
 }
 
 TEST_F(UnderstudyRun, WhatTheEnvironmentAsksToWriteIsTriedBeforeTheViewerStarts) {

@@ -120,6 +120,19 @@ def check(page, view):
     page.rests("a built-in table", before)
     images["table"] = page.save("4-table")
 
+    # The first point of a table of two is dragged to the last one.
+    before = page.shown()
+    page.driver.execute_script("[...document.querySelectorAll('#tables button')].find(b => b.textContent === 'grey').click()")
+    page.rests("a table of two points", before)
+    before = page.shown()
+    ActionChains(page.driver, duration=20).move_to_element_with_offset(
+        editor, int(12 - place[0] / 2), int(place[1] / 2 - 12)).click_and_hold().move_by_offset(int(place[0]) - 24, -60).release(
+        ).perform()
+    page.rests("a table that is nearly a step", before)
+    before = page.shown()
+    page.driver.execute_script("[...document.querySelectorAll('#tables button')].find(b => b.textContent === 'rainbow').click()")
+    page.rests("a built-in table again", before)
+
     before = page.shown()
     page.element("shows-surface").click()
     page.rests("a surface", before)

@@ -84,9 +84,9 @@ TEST(ViewMessage, WhatCannotBeBelievedIsRefusedByItsKey) {
               HasSubstr("'surfaces'"));
   EXPECT_THAT(refusal(R"({"run": "rm -rf /"})"), HasSubstr("an unknown key"));
   std::string control_points = R"({"table": {"knots": [)";
-  for (int i = 0; i < 257; ++i)
+  for (int i = 0; i < 1025; ++i)
     control_points += std::string(i > 0 ? "," : "") + R"({"at":0.5,"colour":[0,0,0],"opacity":0})";
-  EXPECT_THAT(refusal(control_points + "]}}"), HasSubstr("more than 256 control points"));
+  EXPECT_THAT(refusal(control_points + "]}}"), HasSubstr("more than 1024 control points"));
   EXPECT_THAT(refusal(std::string(max_view_message_bytes + 1, ' ')), HasSubstr("exceeds the limit"));
   EXPECT_THAT(refusal(std::string(max_view_message_bytes, '[')), HasSubstr("not a JSON object"));
 }

@@ -67,6 +67,39 @@ TEST(AssemblyPrograms, NameWhatElseReachesColours) {
   EXPECT_THAT(reasons("LRP v, v.w, v, state.light[0].ambient;\n"), IsEmpty());
 }
 
+TEST(AssemblyPrograms, ClampedValuesAreNoCopies) {
+  const std::vector<std::string> volumes{"texture[0]"};
+  const auto coordinate_is_varying = [&](const std::string& copy) {
+    return slice_finding(assembly("TEMP p; " + copy + " p, fragment.texcoord[0];\n" +
+                                  "TEX result.color, p, texture[0], 3D;\n"),
+                         volumes)
+        .coordinate_is_varying;
+  };
+  EXPECT_TRUE(coordinate_is_varying("MOV"));
+  EXPECT_FALSE(coordinate_is_varying("MOV_SAT"));
+  const StageFacts both = assembly(
+      "TEMP a, b; ADD a, fragment.texcoord[0], 0.5; ADD_SAT b, fragment.texcoord[0], 0.5;\n"
+      "TEX a, a, texture[0], 3D; TEX b, b, texture[0], 3D; ADD result.color, a, b;\n");
+  ASSERT_EQ(both.fetches.size(), 2U);
+  EXPECT_NE(both.fetches[0].place, both.fetches[1].place);
+}
+
+TEST(AssemblyPrograms, ElementsBehindAMatrixKeepTheirPlaces) {
+  const StageFacts facts = assembly(
+      "PARAM k[6] = { program.local[0], state.matrix.mvp, program.local[7] };\n"
+      "MOV result.color, k[5];\n");
+  EXPECT_THAT(reaches(facts, "result.color", 0), ElementsAre("uniform program.local[7].x"));
+}
+
+TEST(AssemblyPrograms, BiasedShadowLookupsKeepTheirReference) {
+  const StageFacts facts = assembly(
+      "OPTION ARB_fragment_program_shadow; TEMP p; MOV p, fragment.texcoord[0]; MOV p.z, "
+      "fragment.texcoord[1].x;\n"
+      "MOV p.w, fragment.texcoord[2].y; TXB result.color, p, texture[0], SHADOW2D;\n");
+  ASSERT_EQ(facts.fetches.size(), 1U);
+  EXPECT_EQ(facts.fetches[0].modifiers.size(), 2U);
+}
+
 TEST(AssemblyPrograms, OfVerticesAreRead) {
   const StageFinding finding = analyse_assembly(
       "!!ARBvp1.0\nPARAM m[4] = { state.matrix.mvp }; ADDRESS A0;\nDP4 result.position.x, m[0], "

@@ -7,10 +7,16 @@ const again_ms = 1000;
 function secretAtHand() {
   const found = /^#secret=([0-9a-f]+)$/.exec(location.hash);
   if (found) {
-    sessionStorage.setItem('secret', found[1]);
+    keepSecret(found[1]);
     history.replaceState(null, '', location.pathname);
   }
   return sessionStorage.getItem('secret');
+}
+
+// Another session has another volume: the settings of the last one are not for it.
+function keepSecret(secret) {
+  if (secret !== sessionStorage.getItem('secret')) sessionStorage.removeItem('view');
+  sessionStorage.setItem('secret', secret);
 }
 
 async function proofOf(secret, challenge) {
@@ -72,7 +78,7 @@ export class Connection {
 
   useSecret(text) {
     const digits = text.trim().replace(/^.*#secret=/, '');
-    sessionStorage.setItem('secret', digits);
+    keepSecret(digits);
     this.open();
   }
 

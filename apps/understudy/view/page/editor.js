@@ -2,6 +2,7 @@
 // The editor of the transfer function: control points over the volume's values, above the volume's histogram.
 
 const radius = 6;
+const least_extent = 1 / 1024;  // of a table, in units of the volume's range
 
 // Opacities of one voxel are mostly small, so the editor uses a cube-root scale.
 const heightOf = opacity => Math.cbrt(opacity);
@@ -112,7 +113,12 @@ export class TransferEditor {
     this.on.hovered(x);
     if (!this.dragging || this.selected < 0) return;
     const point = this.points[this.selected];
-    point.at = Math.min(this.points[this.selected + 1]?.at ?? 1, Math.max(this.points[this.selected - 1]?.at ?? 0, x));
+    const last = this.points.length - 1;
+    point.at = Math.min(1, this.points[this.selected + 1]?.at ?? 1, Math.max(0, x));
+    point.at = Math.max(this.points[this.selected - 1]?.at ?? point.at, point.at);
+    // A table whose points all stand at one value is none.
+    if (this.points[last].at - this.points[0].at < least_extent)
+      point.at = this.selected === 0 ? this.points[last].at - least_extent : this.points[0].at + least_extent;
     point.opacity = opacityAt(y);
     this.changed();
   }

@@ -7,6 +7,7 @@ import {colourOf, drawBoxes} from '/overlay.js';
 const rest_ms = 150;       // time after the last move until the image at rest is requested
 const rest_wait_ms = 500;  // from this interval between time steps on, each gets an image at rest
 const most_side = 4096;    // largest side of an image, as in the program
+const most_zoom = 1000;    // of one request, as in the program
 const wheel_step = 1.0015; // zoom factor for one unit of the wheel's delta
 
 const element = id => document.getElementById(id);
@@ -15,7 +16,7 @@ const viewport = element('viewport'), image = element('image'), boxes = element(
 let volume = null;         // the volume's description; null: none yet
 let asked = {};            // merged input since the last request
 let asked_at = null;       // time of the first input since then
-let on_its_way = null;     // {sequence, since} of the only request in flight
+let on_its_way = null;     // {sequence, since, settings} of the only request in flight
 let moving = false, rest_timer = 0;
 let took_ms = null;
 let sequence = 0;
@@ -35,9 +36,14 @@ function remember(part) {
 
 function ask(part, moves) {
   asked_at ??= performance.now();
-  if (part.rotate && asked.rotate) part.rotate = [asked.rotate[0], part.rotate[1]];
+  if (part.rotate && asked.rotate) {
+    // The drags follow each other, though the second may begin elsewhere.
+    const [from, to] = asked.rotate, [next_from, next_to] = part.rotate;
+    part.rotate = [from, to.map((value, k) => value + next_to[k] - next_from[k])];
+  }
   if (part.pan && asked.pan) part.pan = part.pan.map((value, k) => value + asked.pan[k]);
   if (part.zoom && asked.zoom) part.zoom.by *= asked.zoom.by;
+  if (part.zoom) part.zoom.by = Math.min(most_zoom, Math.max(1 / most_zoom, part.zoom.by));
   asked = {...asked, ...part};
   moving = moves;
   clearTimeout(rest_timer);
@@ -58,11 +64,17 @@ function send() {
   if (took_ms !== null) message.took_ms = took_ms;
   if (!connection.send(message)) return;
   const {table, volume: shows, surfaces, light, step, lossless, time_step} = message;
-  remember(JSON.parse(JSON.stringify({table, volume: shows, surfaces, light, step, lossless, time_step})));
-  on_its_way = {sequence, since: asked_at};
+  const settings = JSON.parse(JSON.stringify({table, volume: shows, surfaces, light, step, lossless, time_step}));
+  on_its_way = {sequence, since: asked_at, settings};
   asked = {};
   asked_at = null;
   took_ms = null;
+}
+
+// The request in flight will not be answered; its settings are part of the next one.
+function withdraw() {
+  if (on_its_way) asked = {...on_its_way.settings, ...asked};
+  on_its_way = null;
 }
 
 async function show(head, bytes) {
@@ -74,6 +86,8 @@ async function show(head, bytes) {
   image.getContext('2d').drawImage(bitmap, 0, 0);
   bitmap.close();
   shown = head;
+  // Settings that were refused are not sent again after a reload.
+  if (on_its_way?.sequence === head.sequence) remember(on_its_way.settings);
   remember({camera: head.camera});
   tellTime();
   overlay();
@@ -104,7 +118,7 @@ function answered(number) {
 
 function hear(message) {
   if (message.kind === 'status') {
-    if (message.state !== 'ready') on_its_way = null;
+    if (message.state !== 'ready') withdraw();
     banner(message.state === 'ready' ? null : message.text, message.state === 'loading' ? message.done : null);
   } else if (message.kind === 'volume') {
     begin(message);
@@ -118,13 +132,14 @@ function hear(message) {
   } else if (message.kind === 'impossible') {
     element('exactness').textContent = message.text;
     play(false);
-    answered(message.sequence);
+    // Of a message that cannot be read, the program does not know the number; only one is in flight.
+    if (on_its_way) answered(on_its_way.sequence);
   }
 }
 
 function begin(message) {
   volume = message;
-  on_its_way = null;
+  withdraw();
   document.title = `${message.name} · Understudy`;
   element('name').textContent = message.name;
   element('about').textContent = `${message.size.join(' × ')} of ${message.type}, ${number(message.low)} to ` +
@@ -132,7 +147,8 @@ function begin(message) {
     (message.nodes ? `${message.nodes} node${message.nodes > 1 ? 's' : ''}` : 'in one process');
   element('low').textContent = number(message.low);
   element('high').textContent = number(message.high);
-  const before = remembered() ?? {};
+  const {rotate, pan, zoom, ...pending} = asked;
+  const before = {...remembered(), ...pending};
   editor.showHistogram(message.histogram, message.low, message.high);
   editor.show(before.table?.knots ?? message.table);
   element('tables').replaceChildren(...Object.entries(message.tables).map(([name, points]) => {

@@ -2,6 +2,7 @@
 #include "spu/track/share_group.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace understudy::spu {
 namespace {
@@ -77,14 +78,17 @@ ShareGroup::TextureRecord& ShareGroup::known(GLuint texture) {
   return textures_[texture];
 }
 
-void ShareGroup::remember(GLuint texture) {
+std::uint64_t ShareGroup::identity(GLuint texture) {
   const std::scoped_lock lock(mutex_);
-  known(texture);
+  TextureRecord& record = known(texture);
+  if (record.identity == 0) record.identity = ++changes_;
+  return record.identity;
 }
 
-bool ShareGroup::remembers(GLuint texture) const {
+bool ShareGroup::is(GLuint texture, std::uint64_t identity) const {
   const std::scoped_lock lock(mutex_);
-  return textures_.contains(texture);
+  const auto found = textures_.find(texture);
+  return found != textures_.end() && found->second.identity == identity;
 }
 
 void ShareGroup::texture_rendered_to(GLuint texture) {
@@ -105,8 +109,11 @@ void ShareGroup::list_defined(GLuint list, const ListRecord& record) {
 }
 
 void ShareGroup::lists_deleted(GLuint first, GLsizei count) {
+  if (count <= 0) return;
+  const std::uint64_t end = std::uint64_t(first) + std::uint64_t(count);  // may be beyond the last name
   const std::scoped_lock lock(mutex_);
-  if (count > 0) lists_.erase(lists_.lower_bound(first), lists_.lower_bound(first + GLuint(count)));
+  lists_.erase(lists_.lower_bound(first),
+               end > std::numeric_limits<GLuint>::max() ? lists_.end() : lists_.lower_bound(GLuint(end)));
 }
 
 std::optional<ListRecord> ShareGroup::list(GLuint list) const {

@@ -52,9 +52,11 @@ class ShareGroup {
   /// name is invalid then.
   std::uint64_t deletions() const { return deletions_.load(std::memory_order_relaxed); }
 
-  /// Makes remembers() true for the texture until it is deleted.
-  void remember(GLuint texture);
-  bool remembers(GLuint texture) const;
+  /// Returns a number that the texture keeps until it is deleted, and that no other texture has had: names are
+  /// reused.
+  std::uint64_t identity(GLuint texture);
+  /// Whether the texture of this name still is the one that had this identity.
+  bool is(GLuint texture, std::uint64_t identity) const;
 
   /// A 3-D texture has contents, so draws must be watched.
   void volume_defined() { has_volumes_.store(true, std::memory_order_relaxed); }
@@ -94,6 +96,7 @@ class ShareGroup {
     std::uint64_t changed_wholly = 0;  ///< version of the last change of the whole texture
     std::vector<Change> changes;       ///< after that, oldest first
     bool rendered_to = false;
+    std::uint64_t identity = 0;
   };
 
   /// Requires the mutex.

@@ -37,7 +37,7 @@ TEST(ShareGroup, TellsWhichTexelsChangedSinceAVersion) {
   using volume::TexelBox;
   ShareGroup group;
   group.volume_defined();
-  group.remember(7);
+  EXPECT_NE(group.identity(7), 0U);
   const auto first = group.texture_version(7);
   const TexelBox corner{{0, 0, 0}, {4, 4, 4}}, other{{20, 0, 0}, {24, 4, 4}};
   group.texture_changed(7, corner);
@@ -95,16 +95,31 @@ TEST(ShareGroup, HasVolumesWhileAnyContextWatchesForStacks) {
   EXPECT_TRUE(group.has_volumes()) << "a 3-D texture is for good";
 }
 
+TEST(ShareGroup, ListsAreDeletedUpToTheLastName) {
+  ShareGroup group;
+  group.list_defined(5, {});
+  group.list_defined(7, {});
+  group.lists_deleted(0xffffffff, 1);
+  EXPECT_TRUE(group.list(5) && group.list(7)) << "a name that no list has";
+  group.lists_deleted(6, 0x7fffffff);
+  EXPECT_TRUE(group.list(5));
+  EXPECT_FALSE(group.list(7));
+  group.lists_deleted(0, -1);
+  EXPECT_TRUE(group.list(5));
+}
+
 TEST(ShareGroup, ADeletedTextureIsForgotten) {
   ShareGroup group;
-  EXPECT_FALSE(group.remembers(3));
-  group.remember(3);
+  const auto first = group.identity(3);
   group.texture_rendered_to(3);
-  EXPECT_TRUE(group.remembers(3));
+  EXPECT_EQ(group.identity(3), first);
+  EXPECT_TRUE(group.is(3, first));
   EXPECT_TRUE(group.is_rendered_to(3));
   const auto deletions = group.deletions();
   group.texture_deleted(3);
-  EXPECT_FALSE(group.remembers(3));
+  EXPECT_FALSE(group.is(3, first));
+  EXPECT_NE(group.identity(3), first) << "another texture of this name";
+  EXPECT_FALSE(group.is(3, first));
   EXPECT_FALSE(group.is_rendered_to(3));
   EXPECT_GT(group.deletions(), deletions);
 }

@@ -18,6 +18,7 @@ namespace understudy::spu {
 struct VolumeCounters;
 
 struct KnownVolume {
+  std::uint64_t identity = 0;  ///< of its texture (ShareGroup)
   SentVolume sent;
   KnownColours colours;
   KnownMarch march;  ///< if a ray caster draws it

@@ -33,10 +33,8 @@ KnownVolumes::~KnownVolumes() {
 
 KnownVolume& KnownVolumes::of(GLuint texture) {
   KnownVolume& volume = volumes_[texture];
-  if (volume.counters == nullptr) {
-    group_.remember(texture);
-    volume.counters = &count_volume(texture);
-  }
+  if (volume.identity == 0) volume.identity = group_.identity(texture);
+  if (volume.counters == nullptr) volume.counters = &count_volume(texture);
   return volume;
 }
 
@@ -45,7 +43,15 @@ KnownVolume* KnownVolumes::find(GLuint texture) {
   return found == volumes_.end() ? nullptr : &found->second;
 }
 
+void KnownVolumes::forget_redefined(GLuint texture) {
+  const auto found = volumes_.find(texture);
+  if (found == volumes_.end() || group_.is(texture, found->second.identity)) return;
+  forget(found->second);
+  volumes_.erase(found);
+}
+
 std::optional<Refusal> KnownVolumes::standing_refusal(GLuint texture, GLuint program) {
+  forget_redefined(texture);
   KnownVolume& volume = of(texture);
   const RefusalHistory& history = volume.refusals;
   if (!history.handed_back.empty()) return Refusal{history.handed_back};
@@ -86,7 +92,7 @@ void KnownVolumes::forget(const KnownVolume& volume) {
 
 void KnownVolumes::forget_deleted() {
   std::erase_if(volumes_, [&](auto& entry) {
-    if (group_.remembers(entry.first)) return false;
+    if (group_.is(entry.first, entry.second.identity)) return false;
     forget(entry.second);
     return true;
   });

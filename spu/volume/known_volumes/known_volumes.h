@@ -32,7 +32,7 @@ class KnownVolumes {
   bool empty() const { return volumes_.empty(); }
 
   /// Returns why the application itself draws the volume with `program`, as far as known before the draw is
-  /// examined; null if there is no reason.
+  /// examined; null if there is no reason. Takes the session's lock.
   std::optional<Refusal> standing_refusal(GLuint texture, GLuint program);
   /// Counts that the application draws the volume of `texture`, and prints the reason on stderr if it is new
   /// and `say` is set.
@@ -48,6 +48,8 @@ class KnownVolumes {
 
  private:
   void forget(const KnownVolume& volume);
+  /// Forgets the volume of another texture that had this name. Takes the session's lock.
+  void forget_redefined(GLuint texture);
 
   ShareGroup& group_;
   std::shared_ptr<RenderSession> session_;

@@ -41,6 +41,7 @@ void MergedVolumes::note_brick(const Pipeline& pipeline, const RecognisedRun& se
                      !(pipeline.depth_test && pipeline.depth_write);
   if (!plain) return;
   const GLuint name = pipeline.volume.texture;
+  identities_.try_emplace(name, group_.identity(name));
   volume::TexelBox& shown = shown_[name];
   shown = volume::enclosing(volume::intersection(shown, {{0, 0, 0}, texture.size}),
                             texels_read(seen.slices.region, texture.size, texture.filter));
@@ -129,11 +130,12 @@ void MergedVolumes::forget(GLuint texture) {
 
 void MergedVolumes::forget_deleted() {
   std::vector<GLuint> gone;
-  for (const auto& [texture, shown] : shown_) {
-    if (!group_.remembers(texture)) gone.push_back(texture);
+  for (const auto& [texture, identity] : identities_) {
+    if (!group_.is(texture, identity)) gone.push_back(texture);
   }
   for (const GLuint texture : gone) {
     shown_.erase(texture);
+    identities_.erase(texture);
     const MergedVolume* const merged = volume_with(texture);
     if (merged == nullptr) continue;
     leave_behind(*merged->volume.counters);
@@ -150,6 +152,7 @@ void MergedVolumes::forget_all() {
   merged_.clear();
   groups_.clear();
   shown_.clear();
+  identities_.clear();
   next_search_ = 0;
   pause_ = 1;
 }

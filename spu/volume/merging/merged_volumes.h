@@ -55,7 +55,8 @@ class MergedVolumes {
   KnownVolumes& volumes_;
   std::vector<std::unique_ptr<MergedVolume>> merged_;
   std::vector<Group> groups_;
-  std::map<GLuint, volume::TexelBox> shown_;  ///< texels that the slices of each texture have ever read
+  std::map<GLuint, volume::TexelBox> shown_;    ///< texels that the slices of each texture have ever read
+  std::map<GLuint, std::uint64_t> identities_;  ///< of these textures (ShareGroup)
   /// Tilings that hold for one view only are searched for less and less often.
   std::uint64_t next_search_ = 0;
   std::uint64_t pause_ = 1;

@@ -7,7 +7,9 @@
 #include "spu/report/optimization.h"
 #include "spu/track/share_group.h"
 #include "spu/volume/context/context.h"
+#include "spu/volume/pipeline/block_members.h"
 #include "spu/volume/session/render_session.h"
+#include "spu/volume/texture/texture_parameter.h"
 #include "spu/volume/timing/frame_account.h"
 
 namespace understudy::spu {
@@ -90,10 +92,14 @@ struct Classifier::Key {
 
 void Classifier::append_program(const Pipeline& pipeline, const RecognisedRun& run, Key& key) {
   const ProgramStages& parts = programs_.stages(pipeline.program, *run.fragment.record);
-  key.values.push_back(float(run.fragment.record->link));
-  key.inputs.push_back({key.values.back(), VerificationSchedule::Effect::unknown});
+  const std::size_t link = key.values.size();
+  append_exactly(run.fragment.record->link, key.values);
+  key.take_inputs_from(link, VerificationSchedule::Effect::unknown);
   const auto values = fragment_uniform_values(context_, pipeline.program, parts);
-  for (const UniformValue& value : values) key.values.push_back(value.value);
+  for (const UniformValue& value : values) {
+    const auto [rounded, remainder] = value.floats();
+    key.values.insert(key.values.end(), {rounded, remainder});
+  }
   const ProgramFindings& says = programs_.findings(pipeline, values, Subject::slices);
   if (auto refusal = refusal_of_slices(parts, says, run.fragment, !run.slice_segments.empty()))
     throw Refusal{std::move(*refusal)};
@@ -102,8 +108,9 @@ void Classifier::append_program(const Pipeline& pipeline, const RecognisedRun& r
 
 void Classifier::append_tables(const Pipeline& pipeline, Key& key) const {
   for (const SampledTexture& table : pipeline.others) {
-    key.values.push_back(float(table.texture));
-    key.values.push_back(float(group_.texture_version(table.texture)));
+    append_exactly(table.texture, key.values);
+    append_exactly(group_.texture_version(table.texture), key.values);
+    append_lookup(context_, table.target, table.unit, key.values);
     if (group_.is_rendered_to(table.texture))
       key.values.push_back(std::nanf(""));  // never equal: probed every time
   }

@@ -159,11 +159,13 @@ std::optional<std::vector<std::byte>> block_contents(const DispatchTable& gl, GL
   return contents;
 }
 
+void append_exactly(std::uint64_t number, std::vector<float>& values) {
+  for (int part = 0; part < 4; ++part, number >>= 16) values.push_back(float(number & 0xffff));
+}
+
 void append_digest(std::span<const std::byte> bytes, std::vector<float>& values) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  // 64 bits as four values that floats hold exactly.
-  for (std::uint64_t hash = std::hash<std::string_view>()(text), part = 0; part < 4; ++part, hash >>= 16)
-    values.push_back(float(hash & 0xffff));
+  append_exactly(std::hash<std::string_view>()(text), values);
 }
 
 }  // namespace understudy::spu

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -28,6 +29,9 @@ std::vector<BlockMember> block_members(const GlContext& context, GLuint program)
 
 /// Returns the contents of a block of `program`; null if its buffer cannot be read.
 std::optional<std::vector<std::byte>> block_contents(const DispatchTable& gl, GLuint program, GLuint block);
+
+/// Appends the number as four values that floats hold exactly.
+void append_exactly(std::uint64_t number, std::vector<float>& values);
 
 /// Appends a hash of the bytes as four values: at least one differs if the bytes do.
 void append_digest(std::span<const std::byte> bytes, std::vector<float>& values);

@@ -254,7 +254,10 @@ std::optional<std::string> read_rasterisation(const GlContext& context) {
   const DispatchTable& gl = *context.gl;
   std::array<GLint, 2> mode{};
   gl.GetIntegerv(GL_POLYGON_MODE, mode.data());
-  if (mode[0] != GL_FILL) return "polygons are not filled";
+  if (mode[0] != GL_FILL || (!context.core && mode[1] != GL_FILL)) return "polygons are not filled";
+  if (gl.IsEnabled(GL_RASTERIZER_DISCARD)) return "rasterisation is disabled";
+  if (context.version >= 320 && gl.IsEnabled(GL_DEPTH_CLAMP))
+    return "depth clamping shows what the view volume would cut off";
   if (gl.IsEnabled(GL_POLYGON_SMOOTH)) return "polygons are smoothed";
   if (!context.core && gl.IsEnabled(GL_POLYGON_STIPPLE)) return "polygons are stippled";
   if (context.version >= 450 && (state_value(gl, GL_CLIP_ORIGIN) != GL_LOWER_LEFT ||
@@ -305,7 +308,10 @@ std::optional<std::string> read_surroundings(const GlContext& context, Pipeline&
   if (gl.IsEnabled(GL_STENCIL_TEST)) return "the stencil test is enabled";
   if (gl.IsEnabled(GL_COLOR_LOGIC_OP)) return "a logical operation is enabled";
   if (auto reason = read_sample_operations(context, pipeline.target)) return reason;
-  if (state_value(gl, GL_DRAW_BUFFER1) != GL_NONE) return "more than one draw buffer";
+  const GLint draw_buffers = state_value(gl, GL_MAX_DRAW_BUFFERS);
+  for (GLint i = 1; i < draw_buffers; ++i) {
+    if (state_value(gl, GLenum(GL_DRAW_BUFFER0 + i)) != GL_NONE) return "more than one draw buffer";
+  }
   if (auto reason = read_rasterisation(context)) return reason;
   if (auto reason = read_depth_test(gl, pipeline)) return reason;
   if (!context.core && state_value(gl, GL_RENDER_MODE) != GL_RENDER)

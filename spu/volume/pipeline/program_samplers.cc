@@ -2,6 +2,7 @@
 #include "spu/volume/pipeline/program_samplers.h"
 
 #include <array>
+#include <string>
 
 namespace understudy::spu {
 namespace {
@@ -18,8 +19,15 @@ std::vector<SamplerUniform> read_samplers(const DispatchTable& gl, GLuint progra
     GLint size = 0;
     GLenum type = 0;
     gl.GetActiveUniform(program, GLuint(i), GLsizei(name.size()), nullptr, &size, &type, name.data());
-    if (type == GL_SAMPLER_1D || type == GL_SAMPLER_2D || type == GL_SAMPLER_3D || type == GL_SAMPLER_2D_RECT) {
-      samplers.push_back({name.data(), type, gl.GetUniformLocation(program, name.data())});
+    if (type != GL_SAMPLER_1D && type != GL_SAMPLER_2D && type != GL_SAMPLER_3D && type != GL_SAMPLER_2D_RECT)
+      continue;
+    // Arrays are listed by their first element.
+    std::string text = name.data();
+    const bool array = text.ends_with("[0]");
+    if (array) text.resize(text.size() - 3);
+    for (GLint element = 0; element < size; ++element) {
+      const std::string each = array ? text + "[" + std::to_string(element) + "]" : text;
+      samplers.push_back({each, type, gl.GetUniformLocation(program, each.c_str())});
     }
   }
   return samplers;

@@ -17,6 +17,7 @@
 #include "spu/track/program_sources.h"
 #include "spu/volume/context/context.h"
 #include "spu/volume/pipeline/block_members.h"
+#include "spu/volume/pipeline/built_in_uniform.h"
 #include "spu/volume/program/analysis.h"
 #include "spu/volume/program/element_names.h"
 
@@ -651,24 +652,60 @@ void append_block_contents(const DispatchTable& gl, GLuint program, std::vector<
   }
 }
 
+bool is_whole(Kind kind) {
+  return kind == Kind::integer || kind == Kind::natural;
+}
+
+/// Returns the values of the uniform in the program, exactly; of a built-in one, which has no location, those
+/// of the state of the context. Empty if it is not in use.
+std::vector<double> uniform_components(const GlContext& context, GLuint program, const StageUniform& uniform) {
+  const DispatchTable& gl = *context.gl;
+  if (uniform.name.starts_with("gl_")) return built_in_uniform(gl, uniform.name);
+  const GLint location = gl.GetUniformLocation(program, uniform.name.c_str());
+  if (location < 0) return {};
+  const auto components = std::ptrdiff_t(components_of_type(uniform.type));
+  const auto read = [&]<class T>(T, const auto& get) {
+    std::array<T, 32> value{};  // a double takes the place of two floats in some drivers
+    get(value.data());
+    return std::vector<double>(value.begin(), value.begin() + components);
+  };
+  switch (shape_of(uniform.type).kind) {
+    case Kind::integer:
+      return read(GLint(), [&](GLint* value) { gl.GetUniformiv(program, location, value); });
+    case Kind::natural:
+      return read(GLuint(), [&](GLuint* value) { gl.GetUniformuiv(program, location, value); });
+    default:
+      return read(GLfloat(), [&](GLfloat* value) { gl.GetUniformfv(program, location, value); });
+  }
+}
+
 }  // namespace
+
+std::array<float, 2> UniformValue::floats() const {
+  const auto rounded = float(value);
+  return {rounded, float(value - double(rounded))};
+}
+
+void append_uniform(const GlContext& context, GLuint program, const StageUniform& uniform,
+                    std::vector<float>& values) {
+  const bool whole = is_whole(shape_of(uniform.type).kind);
+  for (const double value : uniform_components(context, program, uniform)) {
+    const auto [rounded, remainder] = UniformValue{{}, 0, value}.floats();
+    values.push_back(rounded);
+    if (whole) values.push_back(remainder);
+  }
+}
 
 std::vector<UniformValue> fragment_uniform_values(const GlContext& context, GLuint application,
                                                   const ProgramStages& stages) {
-  const DispatchTable& gl = *context.gl;
   std::vector<UniformValue> values;
   for (const StageUniform& uniform : stages.uniforms) {
-    const GLint location = gl.GetUniformLocation(application, uniform.name.c_str());
-    const UniformShape shape = shape_of(uniform.type);
-    if (location < 0 || shape.components == 0) continue;
-    const bool chooses = !is_sampler(uniform.type) && (shape.kind == UniformShape::Kind::integer ||
-                                                       shape.kind == UniformShape::Kind::natural);
-    std::array<GLfloat, 16> value{};
-    gl.GetUniformfv(application, location, value.data());
-    for (int c = 0; c < shape.components; ++c)
-      values.push_back({uniform.name, c, value[std::size_t(c)], chooses});
+    const bool chooses = !is_sampler(uniform.type) && is_whole(shape_of(uniform.type).kind);
+    int component = 0;
+    for (const double value : uniform_components(context, application, uniform))
+      values.push_back({uniform.name, component++, value, chooses});
   }
-  if (stages.uniform_blocks) append_block_contents(gl, application, values);
+  if (stages.uniform_blocks) append_block_contents(*context.gl, application, values);
   return values;
 }
 

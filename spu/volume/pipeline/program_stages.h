@@ -3,6 +3,7 @@
 // with a vertex stage of ours, to probe it with chosen samples.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -94,8 +95,11 @@ struct ProgramStages {
 struct UniformValue {
   std::string_view name;  ///< of StageUniform; empty for a block
   int component = 0;
-  float value = 0;
+  double value = 0;      ///< exact: integers may have 32 bits
   bool chooses = false;  ///< an integer or a boolean, which usually controls branches
+
+  /// Returns the value rounded to float, and what rounding left out.
+  std::array<float, 2> floats() const;
 };
 
 /// Returns whether a fragment shader refers to the input by `name`: gl_Color is what the vertex stage writes to
@@ -116,6 +120,10 @@ GLuint probe_program(const GlContext& context, const ProgramRecord* record,
 
 /// Gives every uniform of `to` the value, and every uniform block the binding, that it has in `from`, by name.
 void copy_uniforms(const GlContext& context, GLuint from, GLuint to);
+
+/// Appends the current value of one uniform of `program`: of integers, with what rounding to float leaves out.
+void append_uniform(const GlContext& context, GLuint program, const StageUniform& uniform,
+                    std::vector<float>& values);
 
 /// Returns the current values of the fragment stage's uniforms and uniform blocks in `application`.
 std::vector<UniformValue> fragment_uniform_values(const GlContext& context, GLuint application,

@@ -30,7 +30,7 @@ std::vector<std::string> ends_of_ways(const SamplerRoles& roles) {
 /// Tables whose contents are tracked (spu/track), and that a probe can sample.
 bool is_known_table(const program::SamplerType& type) {
   using program::TextureShape;
-  return !type.array && !type.shadow && !type.multisample &&
+  return type.texels == program::TexelType::real && !type.array && !type.shadow && !type.multisample &&
          (type.shape == TextureShape::line || type.shape == TextureShape::plane ||
           type.shape == TextureShape::rectangle);
 }
@@ -133,7 +133,7 @@ const ProgramFindings* ProgramText::findings(std::span<const std::string> fragme
   std::vector<program::KnownUniform> known;
   if (readings_ < most_readings) {
     for (const UniformValue& value : values) {
-      if (value.chooses) known.push_back({std::string(value.name), value.component, double(value.value)});
+      if (value.chooses) known.push_back({std::string(value.name), value.component, value.value});
     }
   }
   if (!holds(roles, known)) {
@@ -231,8 +231,10 @@ VerificationSchedule::Inputs uniform_inputs(const ProgramFindings& findings,
   };
   using Effect = VerificationSchedule::Effect;
   VerificationSchedule::Inputs inputs;
-  for (const UniformValue& value : values)
-    inputs.push_back({value.value, only_colours(value) ? Effect::measured : Effect::unknown});
+  for (const UniformValue& value : values) {
+    for (const float number : value.floats())
+      inputs.push_back({number, only_colours(value) ? Effect::measured : Effect::unknown});
+  }
   return inputs;
 }
 

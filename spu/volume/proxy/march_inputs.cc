@@ -9,6 +9,7 @@
 
 #include "spu/track/share_group.h"
 #include "spu/volume/context/context.h"
+#include "spu/volume/pipeline/block_members.h"
 #include "spu/volume/program/element_names.h"
 #include "spu/volume/proxy/cuts.h"
 #include "spu/volume/proxy/field_probe.h"
@@ -32,19 +33,6 @@ bool is_scalar(GLenum type) {
     default:
       return true;
   }
-}
-
-/// Appends how a texture of 1 or 2 dimensions is looked up between texels and beyond its ends.
-void append_lookup(const GlContext& context, const SampledTexture& texture, std::vector<float>& values) {
-  const DispatchTable& gl = *context.gl;
-  if (texture.target != GL_TEXTURE_1D && texture.target != GL_TEXTURE_2D) return;
-  GLint active = 0;
-  gl.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
-  gl.ActiveTexture(GLenum(GL_TEXTURE0 + texture.unit));
-  const GLint sampler = bound_sampler(context);
-  for (const GLenum name : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER, GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
-    values.push_back(float(texture_parameter(gl, texture.target, sampler, name)));
-  gl.ActiveTexture(GLenum(active));
 }
 
 /// Whether the uniform affects where samples lie and when a ray ends, and decides about no fragment or colour.
@@ -74,13 +62,7 @@ bool may_be_drawn(const MarchContext& measured, const ShareGroup& group, const s
 }  // namespace
 
 void append_value(const MarchContext& measured, const StageUniform& uniform, std::vector<float>& values) {
-  const DispatchTable& gl = *measured.context.gl;
-  const GLuint program = measured.run.pipeline().program;
-  const GLint location = gl.GetUniformLocation(program, uniform.name.c_str());
-  if (location < 0) return;
-  std::array<GLfloat, 16> value{};
-  gl.GetUniformfv(program, location, value.data());
-  values.insert(values.end(), value.begin(), value.begin() + std::ptrdiff_t(components_of_type(uniform.type)));
+  append_uniform(measured.context, measured.run.pipeline().program, uniform, values);
 }
 
 bool chooses_colours(const ProgramFindings& says, const std::string& uniform) {
@@ -120,7 +102,7 @@ MarchInputs march_inputs(const MarchContext& measured, const CoordinateSpace& sp
   for (const GLint swizzle : measured.texture.swizzle) inputs.fixed.push_back(float(swizzle));
   if (measured.stages.uniform_blocks) varies("uniform blocks", never_equal);
   const auto record = group.programs().program(pipeline.program);
-  inputs.fixed.push_back(record ? float(record->link) : 0.0F);
+  append_exactly(record ? record->link : 0, inputs.fixed);
   for (const StageUniform& uniform : measured.stages.uniforms) {
     if (tells_cuts(uniform.name)) continue;  // measured with the cuts lifted
     const std::size_t before = inputs.fixed.size();
@@ -137,17 +119,18 @@ MarchInputs march_inputs(const MarchContext& measured, const CoordinateSpace& sp
       continue;
     }
     if (is_depth_texture(gl, other)) {
-      inputs.depths.insert(inputs.depths.end(),
-                           {float(other.texture), float(group.texture_version(other.texture))});
+      append_exactly(other.texture, inputs.depths);
+      append_exactly(group.texture_version(other.texture), inputs.depths);
       continue;
     }
     const bool of_samples = std::ranges::any_of(says.ray->tables_of_samples, [&](const std::string& name) {
       return gl.GetUniformLocation(pipeline.program, name.c_str()) == other.sampler_location;
     });
-    if (of_samples) inputs.tables.insert(inputs.tables.end(), {inputs.fixed.size(), inputs.fixed.size() + 1});
-    inputs.fixed.push_back(float(other.texture));
-    inputs.fixed.push_back(float(group.texture_version(other.texture)));
-    append_lookup(measured.context, other, inputs.fixed);
+    const std::size_t first = inputs.fixed.size();
+    append_exactly(other.texture, inputs.fixed);
+    append_exactly(group.texture_version(other.texture), inputs.fixed);
+    for (std::size_t i = first; of_samples && i < inputs.fixed.size(); ++i) inputs.tables.push_back(i);
+    append_lookup(measured.context, other.target, other.unit, inputs.fixed);
   }
   inputs.of_fragment_stage = inputs.varying.size();
   append_other_inputs(measured, space, says, inputs);

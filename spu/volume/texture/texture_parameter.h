@@ -2,6 +2,8 @@
 // Sampling parameters of a texture: those of its sampler object if there is one, otherwise its own.
 #pragma once
 
+#include <vector>
+
 #include "dispatch/table.h"
 
 namespace understudy::spu {
@@ -14,5 +16,9 @@ GLint bound_sampler(const GlContext& context);
 /// Returns a parameter of `sampler` or, if it is 0, of the texture that is bound to `target` of the active
 /// unit.
 GLint texture_parameter(const DispatchTable& gl, GLenum target, GLint sampler, GLenum name);
+
+/// Appends how `unit` looks up its texture of 1 or 2 dimensions between texels and beyond its ends, and which
+/// components it returns.
+void append_lookup(const GlContext& context, GLenum target, int unit, std::vector<float>& values);
 
 }  // namespace understudy::spu

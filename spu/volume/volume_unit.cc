@@ -2,13 +2,16 @@
 #include "spu/volume/volume_unit.h"
 
 #include <cmath>
+#include <optional>
 
 #include "compositor/rendered.h"
 #include "compositor/service.h"
 #include "spu/track/share_group.h"
+#include "spu/volume/context/indexed_state.h"
 #include "spu/volume/depth/deferred_depth_write.h"
 #include "spu/volume/observation/draw_slots.h"
 #include "spu/volume/observation/enclosing_calls.h"
+#include "spu/volume/observation/indexed_state_calls.h"
 #include "spu/volume/observation/program_binaries.h"
 #include "spu/volume/request/explanation.h"
 #include "spu/volume/stages.h"
@@ -61,6 +64,7 @@ Stages& VolumeUnit::stages() {
 void VolumeUnit::fill(Phase phase, DispatchTable& table) {
   if (phase == Phase::plain) {
     fill_enclosing_call_slots(table);
+    fill_indexed_state_slots(table);
     fill_program_binary_slots(table);
     fill_stack_detection_slots(table);
   }
@@ -75,7 +79,11 @@ void VolumeUnit::refuse_in_this_frame(GLuint texture, const Refusal& refusal) {
 
 bool VolumeUnit::substitutes(std::unique_ptr<Run>& run) {
   const GLuint texture = run->volume_texture();
-  const bool shown = shows(run);
+  const bool shown = [&] {
+    std::optional<IndexedState> kept;
+    if (indexed_state) kept.emplace(context());
+    return shows(run);
+  }();
   FrameAccount& account = stages().account;
   const FrameShares spent = account.clock().take();
   account.note([&](FrameRecord& frame) { frame.spent_ms += spent; });
@@ -223,7 +231,10 @@ Phase VolumeUnit::resting_phase() const {
 }
 
 void VolumeUnit::settle_held() {
-  if (stages_) stages_->merger.settle();
+  if (!stages_) return;
+  std::optional<IndexedState> kept;
+  if (indexed_state) kept.emplace(context());
+  stages_->merger.settle();
 }
 
 void VolumeUnit::depth_looked_at(const std::vector<GLuint>& volumes) {

@@ -28,6 +28,7 @@ std::optional<std::string> obstacle(const RenderRequest& request) {
   if (request.op != volume::Operator::over) return "samples are not composed by over";
   if (request.filter != volume::Filter::linear) return "the filter is nearest, which has no samples in between";
   if (request.fog) return "samples fade in fog";
+  if (request.light || !request.surfaces.empty()) return "no integral is defined for surfaces and light";
   if (volume::needs_whole_rays(request))
     return "rays end at an opacity that depends on the viewer's own samples";
   return std::nullopt;

@@ -60,6 +60,12 @@ SavedState::SavedState(const GlContext& context)
         pixel_store_names[i] == GL_PACK_ALIGNMENT || pixel_store_names[i] == GL_UNPACK_ALIGNMENT;
     gl_.PixelStorei(pixel_store_names[i], alignment ? 1 : 0);
   }
+  if (!core_) {
+    gl_.GetFloatv(GL_DEPTH_SCALE, &depth_scale_);
+    gl_.GetFloatv(GL_DEPTH_BIAS, &depth_bias_);
+    gl_.PixelTransferf(GL_DEPTH_SCALE, 1);
+    gl_.PixelTransferf(GL_DEPTH_BIAS, 0);
+  }
   gl_.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   gl_.BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
   gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -126,6 +132,10 @@ SavedState::~SavedState() {
   gl_.BlendEquationSeparate(GLenum(blend_equations_[0]), GLenum(blend_equations_[1]));
   for (std::size_t i = 0; i < pixel_store_names.size(); ++i)
     gl_.PixelStorei(pixel_store_names[i], pixel_store_[i]);
+  if (!core_) {
+    gl_.PixelTransferf(GL_DEPTH_SCALE, depth_scale_);
+    gl_.PixelTransferf(GL_DEPTH_BIAS, depth_bias_);
+  }
   for (const Capability& capability : capabilities_) {
     if (capability.enabled) {
       gl_.Enable(capability.name);

@@ -66,6 +66,8 @@ class SavedState {
   std::array<GLint, 4> blend_factors_{};
   std::array<GLint, 2> blend_equations_{};
   std::array<GLint, 16> pixel_store_{};
+  GLfloat depth_scale_ = 1;  ///< of pixel transfer, in compatibility contexts
+  GLfloat depth_bias_ = 0;
   std::vector<Capability> capabilities_;
   std::vector<BorrowedTexture> borrowed_;
 };

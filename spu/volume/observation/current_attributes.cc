@@ -10,7 +10,6 @@ namespace understudy::spu {
 namespace {
 
 constexpr std::uint32_t every_generic_attribute = 0xffff;  // the 16 that OpenGL guarantees
-constexpr std::uint32_t the_vertex = 1;
 
 /// What a call of kind `vertex` sets. A vertex itself sets no current attribute.
 enum class AttributeKind : std::uint8_t {
@@ -41,7 +40,7 @@ AttributeKind kind_of_attribute(CallId call) {
 }
 
 std::uint32_t bit_of(std::uint64_t index) {
-  return index < 32 ? std::uint32_t(1) << index & ~the_vertex : 0;
+  return index < 32 ? std::uint32_t(1) << index : 0;
 }
 
 template <class Take>
@@ -61,13 +60,13 @@ void AttributeSet::add(CallId call, const std::uint64_t* words) {
       fixed_function = true;
       break;
     case AttributeKind::float_generic:
-      floats |= bit_of(words[0]);
+      floats |= bit_of(words[0]) & generic;
       break;
     case AttributeKind::integer_generic:
-      integers |= bit_of(words[0]);
+      integers |= bit_of(words[0]) & generic;
       break;
     case AttributeKind::double_generic:
-      doubles |= bit_of(words[0]);
+      doubles |= bit_of(words[0]) & generic;
       break;
   }
 }
@@ -75,7 +74,7 @@ void AttributeSet::add(CallId call, const std::uint64_t* words) {
 void AttributeSet::add(std::span<const MemoryArray> arrays) {
   for (const MemoryArray& array : arrays) {
     if (array.role == MemoryArray::Role::generic) {
-      floats |= bit_of(std::uint64_t(array.index));
+      floats |= bit_of(std::uint64_t(array.index)) & generic;
     } else if (array.role != MemoryArray::Role::vertex) {
       fixed_function = true;
     }
@@ -84,7 +83,7 @@ void AttributeSet::add(std::span<const MemoryArray> arrays) {
 
 void AttributeSet::add_list() {
   fixed_function = true;
-  floats |= every_generic_attribute & ~the_vertex;
+  floats |= every_generic_attribute & generic;
 }
 
 void AttributeSet::add(const AttributeSet& others) {

@@ -18,9 +18,11 @@ struct MemoryArray;
 
 /// Attributes that calls have set.
 struct AttributeSet {
+  /// Those that have a current value. In compatibility profiles attribute 0 is the vertex, which has none.
+  std::uint32_t generic = ~std::uint32_t(1);
   /// Colours, normal, texture coordinates, fog coordinate and edge flag.
   bool fixed_function = false;
-  /// Generic attributes, one bit each, by the type of their values. Attribute 0 is the vertex.
+  /// Generic attributes, one bit each, by the type of their values.
   std::uint32_t floats = 0;
   std::uint32_t integers = 0;
   std::uint32_t doubles = 0;

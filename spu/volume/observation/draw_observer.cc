@@ -45,7 +45,7 @@ bool DrawObserver::begins_run() {
     refuse_in_this_frame(pipeline->volume.texture, *refusal);
     return false;
   }
-  run_ = std::make_unique<Run>(std::move(*pipeline), calls_);
+  run_ = std::make_unique<Run>(std::move(*pipeline), calls_, context().core);
   chain_.set_phase(Phase::deferring);
   return true;
 }

@@ -19,6 +19,7 @@
 #include "spu/volume/observation/client_arrays.h"
 #include "spu/volume/observation/draw_observer.h"
 #include "spu/volume/observation/enclosing_calls.h"
+#include "spu/volume/observation/indexed_state_calls.h"
 #include "spu/volume/observation/passing_calls.h"
 #include "spu/volume/observation/texture_changes.h"
 
@@ -497,6 +498,7 @@ void fill_watching_slots(DispatchTable& table) {
   fill_draws(table);
   fill_texture_change_slots(table);
   fill_enclosing_call_slots(table);
+  fill_indexed_state_slots(table);
   table.End = end_while_watching;
 }
 

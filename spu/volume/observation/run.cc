@@ -144,7 +144,7 @@ void Run::draw_memory(const ArraySources& sources, GLenum mode,
   for (const auto& elements : parts) append_elements(calls_, sources, mode, elements);
   // Draws between which no attribute is set save and restore attributes once.
   if (memory_draws_.empty() || memory_draws_.back().end <= attributes_read_)
-    memory_draws_.push_back({.begin = begin, .end = begin, .set = {}});
+    memory_draws_.push_back({.begin = begin, .end = begin, .set = {.generic = set_.generic}});
   memory_draws_.back().end = calls_.words().size();
   memory_draws_.back().set.add(sources.arrays);
 }

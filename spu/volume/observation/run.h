@@ -23,9 +23,11 @@ struct ElementPart {
 
 class Run {
  public:
-  /// Clears `calls`, which must outlive the run: the next run reuses its memory.
-  Run(Pipeline pipeline, Records& calls) : pipeline_(std::move(pipeline)), calls_(calls) {
+  /// Clears `calls`, which must outlive the run: the next run reuses its memory. `core`: of a core profile, in
+  /// which attribute 0 has a current value.
+  Run(Pipeline pipeline, Records& calls, bool core) : pipeline_(std::move(pipeline)), calls_(calls) {
     calls_.clear();
+    if (core) set_.generic = ~std::uint32_t(0);
     // Bound already, but an earlier replay leaves the last slice bound.
     if (pipeline_.stack) bind_slice(pipeline_.volume.texture);
   }

@@ -42,6 +42,13 @@ struct NoteTextureChange {
   }
 };
 
+/// Notes a change once more after the call: another context of the group may have read the old texels while the
+/// driver made it, and has stored them under the version of before.
+template <class Note>
+void note_again(const Note& note) {
+  DrawObserver::current().chain().after_call(note);
+}
+
 /// Direct state access commands identify the texture by their first argument.
 template <auto Slot>
 struct ChangesNamedTexture;
@@ -51,6 +58,7 @@ struct ChangesNamedTexture<Slot> {
     DrawObserver& observer = DrawObserver::current();
     observer.chain().group().texture_changed(texture);
     (observer.next().*Slot)(texture, arguments...);
+    note_again([&] { observer.chain().group().texture_changed(texture); });
   }
 };
 
@@ -89,12 +97,21 @@ void APIENTRY tex_sub_image_3d(GLenum target, GLint level, GLint x, GLint y, GLi
   bound_box_changes(target, level, box_of(x, y, z, width, height, depth));
   DrawObserver::current().next().TexSubImage3D(target, level, x, y, z, width, height, depth, format, type,
                                                pixels);
+  note_again([&] { bound_box_changes(target, level, box_of(x, y, z, width, height, depth)); });
+}
+
+void APIENTRY tex_image_3d(GLenum target, GLint level, GLint format, GLsizei width, GLsizei height,
+                           GLsizei depth, GLint border, GLenum pixel_format, GLenum type, const void* pixels) {
+  NoteTextureChange::before(CallId::TexImage3D)
+      .TexImage3D(target, level, format, width, height, depth, border, pixel_format, type, pixels);
+  note_again([] { NoteTextureChange::before(CallId::TexImage3D); });
 }
 
 void APIENTRY copy_tex_sub_image_3d(GLenum target, GLint level, GLint x, GLint y, GLint z, GLint from_x,
                                     GLint from_y, GLsizei width, GLsizei height) {
   bound_box_changes(target, level, box_of(x, y, z, width, height, 1));
   DrawObserver::current().next().CopyTexSubImage3D(target, level, x, y, z, from_x, from_y, width, height);
+  note_again([&] { bound_box_changes(target, level, box_of(x, y, z, width, height, 1)); });
 }
 
 void APIENTRY texture_sub_image_3d(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width,
@@ -103,12 +120,14 @@ void APIENTRY texture_sub_image_3d(GLuint texture, GLint level, GLint x, GLint y
   named_box_changes(texture, level, box_of(x, y, z, width, height, depth));
   DrawObserver::current().next().TextureSubImage3D(texture, level, x, y, z, width, height, depth, format, type,
                                                    pixels);
+  note_again([&] { named_box_changes(texture, level, box_of(x, y, z, width, height, depth)); });
 }
 
 void APIENTRY copy_texture_sub_image_3d(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLint from_x,
                                         GLint from_y, GLsizei width, GLsizei height) {
   named_box_changes(texture, level, box_of(x, y, z, width, height, 1));
   DrawObserver::current().next().CopyTextureSubImage3D(texture, level, x, y, z, from_x, from_y, width, height);
+  note_again([&] { named_box_changes(texture, level, box_of(x, y, z, width, height, 1)); });
 }
 
 void APIENTRY clear_tex_sub_image(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width,
@@ -117,6 +136,7 @@ void APIENTRY clear_tex_sub_image(GLuint texture, GLint level, GLint x, GLint y,
   named_box_changes(texture, level, box_of(x, y, z, width, height, depth));
   DrawObserver::current().next().ClearTexSubImage(texture, level, x, y, z, width, height, depth, format, type,
                                                   value);
+  note_again([&] { named_box_changes(texture, level, box_of(x, y, z, width, height, depth)); });
 }
 
 /// A copy changes only its destination. Its box is as large as the source's, or smaller if the source is
@@ -125,13 +145,17 @@ template <auto Slot>
 void APIENTRY copy_image(GLuint from, GLenum from_target, GLint from_level, GLint from_x, GLint from_y,
                          GLint from_z, GLuint to, GLenum to_target, GLint to_level, GLint x, GLint y, GLint z,
                          GLsizei width, GLsizei height, GLsizei depth) {
-  if (to_target == GL_TEXTURE_3D) {
-    named_box_changes(to, to_level, box_of(x, y, z, width, height, depth));
-  } else if (to_target != GL_RENDERBUFFER) {
-    DrawObserver::current().chain().group().texture_changed(to);
-  }
+  const auto note = [&] {
+    if (to_target == GL_TEXTURE_3D) {
+      named_box_changes(to, to_level, box_of(x, y, z, width, height, depth));
+    } else if (to_target != GL_RENDERBUFFER) {
+      DrawObserver::current().chain().group().texture_changed(to);
+    }
+  };
+  note();
   (DrawObserver::current().next().*Slot)(from, from_target, from_level, from_x, from_y, from_z, to, to_target,
                                          to_level, x, y, z, width, height, depth);
+  note_again(note);
 }
 
 }  // namespace
@@ -146,6 +170,7 @@ void fill_texture_change_slots(DispatchTable& table) {
   table.TextureSubImage2D = ChangesNamedTexture<&Table::TextureSubImage2D>::call;
   table.TextureSubImage3D = texture_sub_image_3d;
   table.CopyTextureSubImage3D = copy_texture_sub_image_3d;
+  table.TexImage3D = tex_image_3d;
   table.TexSubImage3D = tex_sub_image_3d;
   table.CopyTexSubImage3D = copy_tex_sub_image_3d;
   table.ClearTexImage = ChangesNamedTexture<&Table::ClearTexImage>::call;

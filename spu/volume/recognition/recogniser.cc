@@ -111,6 +111,28 @@ void append_untold_inputs(std::vector<StageInput>& inputs) {
   inputs.push_back({"gl_FogFragCoord", GL_FLOAT, 1, false});
 }
 
+/// Whether face culling removes any of the triangles, which transform feedback captures all the same.
+bool culls_any(const DispatchTable& gl, const ObservedPolygons& triangles) {
+  if (!gl.IsEnabled(GL_CULL_FACE)) return false;
+  GLint culled = GL_BACK;
+  GLint front = GL_CCW;
+  gl.GetIntegerv(GL_CULL_FACE_MODE, &culled);
+  gl.GetIntegerv(GL_FRONT_FACE, &front);
+  if (culled == GL_FRONT_AND_BACK) return true;
+  for (std::size_t p = 0; p < triangles.count(); ++p) {
+    const auto corner = triangles.polygon(p);
+    const auto& a = corner[0].clip;
+    const auto& b = corner[1].clip;
+    const auto& c = corner[2].clip;
+    // The sign of the area in the window, also where corners lie behind the eye.
+    const double area = a[0] * (b[1] * c[3] - c[1] * b[3]) - b[0] * (a[1] * c[3] - c[1] * a[3]) +
+                        c[0] * (a[1] * b[3] - b[1] * a[3]);
+    const bool is_front = (area > 0) == (front == GL_CCW);
+    if (is_front == (culled == GL_FRONT)) return true;
+  }
+  return false;
+}
+
 Refusal not_affine(const char* reason, const CameraFit& fit) {
   return {reason, fmt::format("residual {:.2g} of a fit, {:.0e} is allowed", fit.residual, max_fit_residual)};
 }
@@ -201,6 +223,7 @@ void Recogniser::observe_shader(const Run& run, const ProgramStages& stages,
   }
   if (run.pipeline().blending.replaces) throw Refusal{slices_replace};
   if (!stages.trouble.empty()) throw Refusal{stages.trouble};
+  if (culls_any(*context_.gl, capture.polygons)) throw Refusal{"faces of slices are culled"};
   if (!capture.fit) throw Refusal{"no output of the vertex shader is an affine map of the position"};
   seen.polygons = std::move(capture.polygons);
   seen.fit = capture.fit;

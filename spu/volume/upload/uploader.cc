@@ -113,7 +113,15 @@ void Uploader::upload(const TexelsWanted& wanted, SentVolume& sent, VolumeCounte
 
   const TimedShare timed(account_.clock(), &FrameShares::upload);
   sent.generation = 0;
-  const Transferred transferred = send(wanted, changed_at_most, description, sent, service);
+  const Transferred transferred = [&] {
+    try {
+      return send(wanted, changed_at_most, description, sent, service);
+    } catch (...) {
+      // The next attempt has another id: what was sent under this one would stay for good.
+      if (description.id != 0) session_.forget(description.id);
+      throw;
+    }
+  }();
   sent.range = value_range(sent.texture, sent.hashes.range());
   sent.description = description;
   sent.texture_version = wanted.texture_version;

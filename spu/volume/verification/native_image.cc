@@ -47,6 +47,28 @@ class ColourBlending {
   std::array<GLboolean, 4> written_{};
 };
 
+/// In its scope, fragments are clamped to [0,1] before they are blended into floats, as they are in the
+/// application's framebuffer unless that has floats. Only compatibility profiles can.
+class ClampedFragments {
+ public:
+  ClampedFragments(const GlContext& context, const Target& target)
+      : gl_(*context.gl), clamps_(!context.core && !target.floating) {
+    if (!clamps_) return;
+    gl_.GetIntegerv(GL_CLAMP_FRAGMENT_COLOR, &before_);
+    gl_.ClampColor(GL_CLAMP_FRAGMENT_COLOR, GL_TRUE);
+  }
+  ~ClampedFragments() {
+    if (clamps_) gl_.ClampColor(GL_CLAMP_FRAGMENT_COLOR, GLenum(before_));
+  }
+  ClampedFragments(const ClampedFragments&) = delete;
+  ClampedFragments& operator=(const ClampedFragments&) = delete;
+
+ private:
+  const DispatchTable& gl_;
+  bool clamps_;
+  GLint before_ = 0;
+};
+
 /// Narrows the application's scissor to `rect` in its scope.
 class NarrowedScissor {
  public:
@@ -76,10 +98,13 @@ class NarrowedScissor {
 NativeDrawing::NativeDrawing(const GlContext& context, const Pipeline& pipeline,
                              const volume::RenderRequest& request)
     : context_(context), background_(pipeline.blending.op == volume::Operator::min ? 1.0F : 0.0F) {
-  if (request.viewport.x < 0 || request.viewport.y < 0) return;
-  framebuffer_.emplace(context, request.viewport.x + request.viewport.width,
-                       request.viewport.y + request.viewport.height, pipeline.target.samples, request.depth,
-                       background_);
+  // Only the part of the viewport that lies in the application's framebuffer is ever read.
+  const int width = request.viewport.x + request.viewport.width;
+  const int height = request.viewport.y + request.viewport.height;
+  GLint longest = 0;
+  context.gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &longest);
+  if (width < 1 || height < 1 || width > longest || height > longest) return;
+  framebuffer_.emplace(context, width, height, pipeline.target.samples, request.depth, background_);
 }
 
 void NativeDrawing::draw(const Run& run) {
@@ -89,6 +114,7 @@ void NativeDrawing::draw(const Run& run) {
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_->name());
   {
     const ColourBlending blending(gl, run.pipeline().blending);
+    const ClampedFragments clamped(context_, run.pipeline().target);
     run.replay(gl);
   }
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(bound));

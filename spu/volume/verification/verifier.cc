@@ -58,7 +58,7 @@ std::optional<Comparison> Verifier::compare_whole(const ImageToVerify& what, con
   const volume::Rect window = intersection(what.window, what.request.viewport);
   if (window.empty()) return std::nullopt;
   NativeDrawing drawing(context_, pipeline, what.request);
-  if (!drawing.complete()) return std::nullopt;
+  if (!drawing.complete()) throw Refusal{"the driver offers no float framebuffer to compare images in"};
   if (!volume.schedule.native_ms()) drawing.compile(what.run, window, what.request.depth);
   const double native_ms = drawing.add_timed(what.run);
   NativeImage native = drawing.image(window);

@@ -60,8 +60,8 @@ struct RaySteps {
   /// The number of samples is what it would be if the first lay this many steps from t0, wherever it does lie:
   /// for programs that compute the number of samples in advance, as ceil(L) from the middle of the first step.
   /// The last sample may then lie beyond the region, where the field is defined by the texture's wrapping; the
-  /// texture must not repeat, the region must be all of it, and there must be no clip planes. Unset: samples
-  /// lie up to L.
+  /// texture must not repeat, nor have a border under a nearest filter, the region must be all of it, and there
+  /// must be no clip planes. Unset: samples lie up to L.
   std::optional<double> counted_from;
   /// Every ray that enters the region before the far plane and the opaque geometry has a first sample, even if
   /// it lies beyond the region: for programs that test for the end of a ray only after a sample, like VTK's.
@@ -102,7 +102,7 @@ struct RaySteps {
 
 /// The position of the second sample of a slice segment, relative to the first one on its plane: `planes` plane
 /// spacings further along the ray (0: none), plus `offset`. It is not limited to the region: it may be anywhere
-/// that the texture's wrapping, except repetition, defines a value.
+/// that the texture's wrapping, except repetition and a border under a nearest filter, defines a value.
 struct SliceSegment {
   double planes = 0;
   Vec3 offset{};

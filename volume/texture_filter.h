@@ -19,7 +19,8 @@ constexpr int rounded_mix(int a, int b, int step) {
   return ((filter_steps - step) * a + step * b + filter_steps / 2) / filter_steps;
 }
 
-/// What the linear filter reads beyond the outermost texels.
+/// What the linear filter reads beyond the outermost texels. Under `nearest`, samples of a texture with a
+/// border must not lie beyond it (validate()).
 enum class Wrap : std::uint8_t { edge, border, repeat };
 
 }  // namespace understudy::volume

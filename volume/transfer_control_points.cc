@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 
@@ -137,6 +138,15 @@ TransferControlPoints spanning(const TransferControlPoints& control_points, doub
   return spread;
 }
 
+void set_range(TransferFunction& function, double low, double high) {
+  constexpr float greatest = std::numeric_limits<float>::max();
+  const auto finite = [](double value) {
+    return float(std::clamp(value, -double(greatest), double(greatest)));
+  };
+  function.low = std::min(finite(low), std::nextafter(greatest, 0.0F));
+  function.high = std::max(finite(high), std::nextafter(function.low, greatest));
+}
+
 TransferFunction sampled(const TransferControlPoints& control_points, double low, double high, double step) {
   check(control_points);
   if (!(step > 0 && std::isfinite(step)))
@@ -145,8 +155,7 @@ TransferFunction sampled(const TransferControlPoints& control_points, double low
                offset = control_points.of_values ? 0.0 : low;
   const double first = control_points.control_points.front().at, last = control_points.control_points.back().at;
   TransferFunction table;
-  table.low = float(offset + scale * first);
-  table.high = float(offset + scale * last);
+  set_range(table, offset + scale * first, offset + scale * last);
   table.entries.reserve(table_entries);
   for (int i = 0; i < table_entries; ++i) {
     const ControlPoint point =

@@ -35,6 +35,10 @@ std::string built_in_control_points();
 /// values, if they lie beyond its own: pre-integration needs to find where a segment leaves the table.
 TransferControlPoints spanning(const TransferControlPoints& control_points, double low, double high);
 
+/// Sets the ends of a transfer function, with low <= high, to finite floats that differ even where rounding
+/// would make them equal.
+void set_range(TransferFunction& function, double low, double high);
+
 /// The transfer function for samples `step` units of length apart, for a volume with values from `low` to
 /// `high`; its range is in values. Opacity becomes 1 - (1 - opacity)^step. Throws as check() does, and for a
 /// step that is not a positive number.

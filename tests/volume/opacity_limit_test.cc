@@ -69,14 +69,17 @@ TEST(OpacityLimit, EndsLitRaysLikeOthers) {
   EXPECT_LE(difference(image_of(texture, request), unlit).max, 1e-5);
 }
 
-TEST(OpacityLimit, HoldsBesideSurfaces) {
-  const Texture texture = noise(describe({40, 40, 40}, TexelType::u8), 25);
-  RenderRequest request = limited_request(texture, 0.6F);
-  request.steps.emplace();
-  request.steps->metric = {60, 0, 0, 0, 60, 0, 0, 0, 60};
-  const Image alone = image_of(texture, request);
-  request.surfaces = {{-1000, {1, 1, 1, 1}}};  // which no ray meets
-  EXPECT_LE(difference(image_of(texture, request), alone).max, 1e-5);
+TEST(OpacityLimit, HoldsForUnlitBlocksOfSegments) {
+  for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32}) {
+    Texture texture = noise(describe({40, 40, 40}, type), 25);
+    texture.description.ghost_layer = 1;
+    RenderRequest request = limited_request(texture, 0.6F);
+    request.steps.emplace();
+    request.steps->metric = {60, 0, 0, 0, 60, 0, 0, 0, 60};
+    const Image alone = image_of(texture, request);
+    request.light.emplace().on_samples = false;  // of surfaces, of which there are none
+    EXPECT_LE(difference(image_of(texture, request), alone).max, 1e-5);
+  }
 }
 
 TEST(OpacityLimit, LeavesOutWhatLiesBehind) {
@@ -96,6 +99,10 @@ TEST(OpacityLimit, IsRefusedWhereItMeansNothing) {
     EXPECT_THROW(image_of(texture, limited_request(texture, limit)), std::invalid_argument) << limit;
   RenderRequest request = limited_request(texture, 0.5F);
   request.op = Operator::add;
+  EXPECT_THROW(image_of(texture, request), std::invalid_argument);
+  request.op = Operator::over;
+  request.steps.emplace().metric = {9, 0, 0, 0, 9, 0, 0, 0, 9};
+  request.surfaces = {{0.5F, {1, 1, 1, 1}}};
   EXPECT_THROW(image_of(texture, request), std::invalid_argument);
 }
 

@@ -255,6 +255,18 @@ TEST(RaySteps, WithoutSenseAreRefused) {
   bad.steps->first = 0.5;
   EXPECT_NO_THROW(validate(texture.description, bad));
   EXPECT_THROW(validate(repeating.description, bad), std::invalid_argument) << "a texture that repeats";
+  Texture bordered = texture;
+  bordered.description.wrap[2] = Wrap::border;
+  EXPECT_NO_THROW(validate(bordered.description, bad));
+  bad.filter = Filter::nearest;
+  EXPECT_NO_THROW(validate(texture.description, bad));
+  EXPECT_THROW(validate(bordered.description, bad), std::invalid_argument) << "a border without a filter";
+  bad.steps->first = 0;
+  EXPECT_NO_THROW(validate(bordered.description, bad)) << "none lies beyond";
+  bad.region.high[2] = 1.1;
+  EXPECT_THROW(validate(bordered.description, bad), std::invalid_argument) << "rays reach beyond the texture";
+  bad.region.high[2] = 1;
+  bad.filter = Filter::linear;
   bad.steps->first = 20;
   EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "far beyond";
   bad.steps->first = good.steps->first;
@@ -275,6 +287,9 @@ TEST(RaySteps, WithoutSenseAreRefused) {
   bad.region = {{0, 0, 0}, {1, 1, 1}};
   EXPECT_NO_THROW(validate(texture.description, bad));
   EXPECT_THROW(validate(repeating.description, bad), std::invalid_argument) << "a texture that repeats";
+  EXPECT_NO_THROW(validate(bordered.description, bad));
+  bad.filter = Filter::nearest;
+  EXPECT_THROW(validate(bordered.description, bad), std::invalid_argument) << "a border without a filter";
 }
 
 }  // namespace

@@ -118,6 +118,16 @@ TEST(Segments, AGhostLayerTooSmallIsRefused) {
 }
 
 /// A segment may be visible at its back only: blocks with clear fronts lie beside visible blocks.
+TEST(Segments, BeyondABorderWithoutAFilterAreRefused) {
+  Texture texture = noise(describe({45, 38, 51}, TexelType::u8, Wrap::border), 5);
+  RenderRequest request = slice_segments_of(texture, false);
+  EXPECT_NO_THROW(validate(texture.description, request));
+  request.filter = Filter::nearest;
+  EXPECT_THROW(validate(texture.description, request), std::invalid_argument);
+  texture.description.wrap.fill(Wrap::edge);
+  EXPECT_NO_THROW(validate(texture.description, request));
+}
+
 TEST(Segments, SkippingLeavesNoSegmentOut) {
   for (const bool along_rays : {false, true}) {
     Texture texture = sampled(describe({64, 64, 64}, TexelType::u8), sphere_field(0.2, 0.01));

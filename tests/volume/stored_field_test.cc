@@ -65,6 +65,36 @@ INSTANTIATE_TEST_SUITE_P(Textures, StoredField,
                                            StoredCase{"a_plate", TexelType::f32, Wrap::border, {30, 1, 30}}),
                          [](const auto& info) { return info.param.name; });
 
+/// The integral of the field along a path, by Simpson's rule, which is exact for cubics.
+double integral_of(const std::vector<Stretch>& path) {
+  double sum = 0;
+  for (const Stretch& stretch : path) {
+    const Cubic& value = stretch.value[0];
+    sum += stretch.length * (value(0) + 4 * value(0.5) + value(1)) / 6;
+  }
+  return sum;
+}
+
+TEST(CellFaces, CutNoRayFarFromTheTexture) {
+  const Texture texture = sampled(describe({40, 33, 17}, TexelType::u8), marschner_lobb_field());
+  const Field field = texture_field(texture.description, Filter::linear, texture.texels);
+  const BrickStore store = filled(texture);
+  constexpr std::size_t faces = 42 + 35 + 19;
+  // 64-bit integers cannot count the faces of the third path, and doubles cannot tell those of the last.
+  for (const double far : {1e4, 1e8, 1e20, 1e307}) {
+    const Vec3 from{-far, 0.3, 0.4}, to{far, 0.6, 0.5};
+    const std::vector<Stretch> stored = stored_field_along_ray(store, from, to, 1);
+    ASSERT_LE(stored.size(), faces + 1) << far;
+    double length = 0;
+    for (const Stretch& stretch : stored) length += stretch.length;
+    EXPECT_NEAR(length, 1, 1e-12) << far;
+    if (far > 1e4) continue;  // the reference counts texels in 32 bits
+    const std::vector<Stretch> whole = field_along_ray(field, texture.description.size, from, to, 1);
+    EXPECT_LE(whole.size(), faces + 1);
+    EXPECT_NEAR(integral_of(whole), integral_of(stored), 1e-9);
+  }
+}
+
 /// Steps of a thirtieth of the volume's depth (divided by `shorter`), at any angle of the ray.
 RenderRequest between_planes(const Texture& texture, double shorter) {
   RenderRequest request = request_on_steps(texture);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -76,6 +77,25 @@ TEST(TransferControlPoints, OpacityFollowsTheStepAndRunsLinearlyBetweenControlPo
       0, 1, 1);
   EXPECT_EQ(step.entries[last / 2][3], 0);
   EXPECT_EQ(step.entries[last / 2 + 1][3], 0.5F);
+}
+
+TEST(TransferControlPoints, SpanARangeThatFloatsCanHold) {
+  using Limits = std::numeric_limits<double>;
+  const TransferControlPoints grey = control_points_named("grey");
+  const VolumeDescription volume = describe({4, 4, 4}, TexelType::f32);
+  RenderRequest request = orbit_request(volume, {1, 1, 1}, {0, 0, 4}, 4, 4, 1);
+  const std::array<std::array<double, 2>, 6> ranges{{{3e7, 3e7 + 1},
+                                                     {-3e7, -3e7 + 1},
+                                                     {1e17, 1e17},
+                                                     {0, 1e300},
+                                                     {Limits::max(), Limits::max()},
+                                                     {-Limits::max(), -Limits::max()}}};
+  for (const auto& [low, high] : ranges) {
+    request.classification = sampled(grey, low, high, 1);
+    EXPECT_NO_THROW(validate(volume, request)) << low << " to " << high;
+  }
+  const TransferFunction constant = sampled(grey, 3e7, 3e7 + 1, 1);
+  EXPECT_EQ(constant.low, 3e7F) << "a constant volume has the value of the lower end";
 }
 
 TEST(OrbitCamera, LooksAtTheMiddleFromEverySideAndFromThePoles) {

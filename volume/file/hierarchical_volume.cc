@@ -193,7 +193,9 @@ FileDescription description_of_level(const HierarchicalVolume& volume, int level
     throw FileError(fmt::format("{}: has no level {}; its levels are 0 to {}", path, level, grid.levels() - 1));
   FileDescription description = volume.description();
   const HierarchicalBlock& all = volume.block(0);
-  if (all.low <= all.high) description.values = values_between(description, all.low, all.high);
+  const std::array<double, 2> values = values_between(description, all.low, all.high);
+  // Where infinite scalars hide the range of the others, only the samples tell it.
+  if (all.low <= all.high && std::isfinite(values[0]) && std::isfinite(values[1])) description.values = values;
   if (level == 0) return description;
   LevelOfDetail& detail = description.detail.emplace();
   detail.level = level;

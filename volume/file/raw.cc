@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "volume/cell_lattice.h"
 #include "volume/file/file_error.h"
 
 namespace understudy::volume {
@@ -42,9 +43,12 @@ void take_type(std::string_view word, FileHints& hints) {
 std::string advice_for(const std::array<int, 3>& size, ScalarType type, std::optional<std::uint64_t> found) {
   std::string advice = fmt::format("{} x {} x {} scalars of {} were expected: check the size and the type",
                                    size[0], size[1], size[2], name_of(type));
+  // dense_volume() refuses other sizes, whose product could overflow.
+  const bool possible = std::ranges::all_of(size, [](int n) { return n >= 1 && n <= max_axis_texels; });
+  if (!found || !possible) return advice;
   std::uint64_t scalars = 1;
-  for (const int extent : size) scalars *= std::uint64_t(std::max(extent, 1));
-  if (!found || *found % scalars != 0) return advice;
+  for (const int extent : size) scalars *= std::uint64_t(extent);
+  if (*found % scalars != 0) return advice;
   const std::uint64_t each = *found / scalars;
   if (each == 1) advice += " (u8 would fit)";
   if (each == 2) advice += " (u16 or i16 would fit)";

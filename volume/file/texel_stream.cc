@@ -217,9 +217,11 @@ void TexelStream::convert_to(std::span<const std::byte> scalars) {
       ++figures_.not_numbers;
       continue;
     }
+    error = std::max(error, std::abs(value - meant));
+    // No transfer function can span infinite values; they show what its ends show.
+    if (std::isinf(value)) continue;
     low = std::min(low, value);
     high = std::max(high, value);
-    error = std::max(error, std::abs(value - meant));
   }
   figures_.low = low;
   figures_.high = high;

@@ -42,9 +42,9 @@ TexelMapping mapping_of(const FileDescription& file, const TexelChoice& choice);
 
 /// Statistics of the texels converted so far.
 struct TexelFigures {
-  double low = 0;  ///< least and greatest value; low > high if there was none
+  double low = 0;  ///< least and greatest finite value; low > high if there was none
   double high = -1;
-  double largest_error = 0;  ///< between a value and the value of its texel
+  double largest_error = 0;  ///< between a value and the value of its texel; infinite if some value is
   std::uint64_t not_numbers = 0;
 };
 

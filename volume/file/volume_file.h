@@ -49,7 +49,7 @@ struct FileDescription {
   /// A scalar s of the file has the value offset + scale * s.
   double scale = 1;
   double offset = 0;
-  /// The volume's least and greatest value, if its file specifies them and there are any.
+  /// The volume's least and greatest value, if its file specifies them, there are any, and both are finite.
   std::optional<std::array<double, 2>> values;
 };
 
@@ -70,8 +70,8 @@ class VolumeFile {
   virtual std::size_t bytes_for_scalar() const { return bytes_per_scalar(description_.type); }
   /// Bytes read from the file so far, including headers.
   virtual std::uint64_t bytes_read() const = 0;
-  /// Bounds of the values in `box`, if the file specifies them apart from its scalars; low > high: there are
-  /// none.
+  /// Bounds of the values in `box`, infinite ones included, if the file specifies them apart from its scalars;
+  /// low > high: there are none.
   virtual std::optional<std::array<double, 2>> values_in(const TexelBox& /*box*/) const { return std::nullopt; }
   /// The most memory that read() takes, in addition to `scalars`, for this box or any like it further along z.
   virtual std::size_t memory_to_read(const TexelBox& /*box*/) const { return 0; }

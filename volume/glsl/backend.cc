@@ -82,6 +82,8 @@ struct BackendChooser::Shared {
     if (told.insert(line).second) tell(line);
   }
 
+  bool has_no_device() const { return device_tried && !device; }
+
   /// Null if OpenGL is unavailable; the reason has been reported then.
   Device* open_device() {
     if (std::exchange(device_tried, true)) return device.get();
@@ -121,6 +123,7 @@ class BackendChooser::Renderer final : public BrickRenderer {
     FrameCounts mine;
     if (!draw_with_opengl(request, out, mine, occlusion)) draw_on_cpu(request, out, mine, occlusion);
     mostly_empty_ = 2 * mine.blocks_empty > mine.blocks;
+    few_samples_ = mine.samples < least_samples;
     counts += mine;
   }
 
@@ -133,7 +136,7 @@ class BackendChooser::Renderer final : public BrickRenderer {
     if (shared_.wish == Backend::automatic && !wanted(kind_of(request))) return false;
     Device* device = shared_.open_device();
     if (device == nullptr) return false;
-    if (!gl_ && too_little_ && device->texture_memory().left() <= *too_little_) return false;
+    if (lacks_memory()) return false;
     if (!gl_) gl_ = std::make_unique<GlslRayCaster>(store_, *device);
     if (const auto reason = gl_->obstacle(request)) {
       shared_.tell_once(fmt::format("CPU: the GL backend does not draw {}", *reason));
@@ -164,12 +167,29 @@ class BackendChooser::Renderer final : public BrickRenderer {
   }
 
   void draw_on_cpu(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion) {
-    // Hidden samples cost no time, and would distort the time per sample while speeds are compared.
-    const auto found = shared_.speeds.find(kind_of(request));
-    if (shared_.wish == Backend::automatic && (found == shared_.speeds.end() || !found->second.gl_is_faster))
-      occlusion = nullptr;
+    if (!compares(request)) return cpu_->render(request, out, counts, occlusion);
+    // Hidden samples cost no time, and would distort the time per sample.
     measured(request, counts, &Speeds::cpu, &Speeds::cpu_images,
-             [&] { cpu_->render(request, out, counts, occlusion); });
+             [&] { cpu_->render(request, out, counts, nullptr); });
+  }
+
+  /// Whether an image on the CPU serves the comparison of its kind with OpenGL.
+  bool compares(const RenderRequest& request) const {
+    if (shared_.wish != Backend::automatic || few_samples_ || !may_draw_with_opengl(request)) return false;
+    const auto found = shared_.speeds.find(kind_of(request));
+    return found == shared_.speeds.end() || !found->second.gl_is_faster;
+  }
+
+  /// Whether OpenGL could draw the image, as far as is known: no device is opened to find out.
+  bool may_draw_with_opengl(const RenderRequest& request) const {
+    if (failed_ || store_.empty() || shared_.has_no_device()) return false;
+    if (gl_) return !gl_->obstacle(request);
+    return !lacks_memory();
+  }
+
+  /// Whether the volume did not fit into the device's memory, of which no more is left since.
+  bool lacks_memory() const {
+    return !gl_ && too_little_ && shared_.device->texture_memory().left() <= *too_little_;
   }
 
   /// Whether OpenGL draws the next image of this kind: while measuring, after the CPU's images; then always if
@@ -208,6 +228,7 @@ class BackendChooser::Renderer final : public BrickRenderer {
   bool failed_ = false;                      ///< OpenGL failed on this volume
   std::optional<std::uint64_t> too_little_;  ///< texture memory that was left when this volume did not fit
   bool mostly_empty_ = false;                ///< as of the last image
+  bool few_samples_ = false;                 ///< likewise: too few to measure
 };
 
 BackendChooser::BackendChooser(Backend wish, Tell tell, const TextureMemoryWish& memory)

@@ -39,6 +39,18 @@ bool believable(const Rect& rect) {
   return in(rect.x) && in(rect.y) && in(rect.width) && in(rect.height);
 }
 
+/// Whether samples must not lie beyond the texture along `axis`: if it repeats, in texels that only other ranks
+/// hold; under a nearest filter, in a border, which kernels do not read because they clamp positions.
+bool ends_with_texture(const VolumeDescription& volume, const RenderRequest& request, std::size_t axis) {
+  const Wrap wrap = volume.wrap[axis];
+  return wrap == Wrap::repeat || (wrap == Wrap::border && request.filter == Filter::nearest);
+}
+
+/// Such a texture, in words.
+const char* words_for(Wrap wrap) {
+  return wrap == Wrap::repeat ? "a repeating texture" : "a texture with a border and a nearest filter";
+}
+
 void validate_classification(const VolumeDescription& volume, const Classification& classification) {
   if (const auto* function = std::get_if<TransferFunction>(&classification)) {
     if (volume.type == TexelType::rgba8)
@@ -139,8 +151,9 @@ void validate_count(const VolumeDescription& volume, const RenderRequest& reques
   const double beyond = steps->beyond_end();
   if (!steps->counted_from && beyond == 0) return;
   if (beyond > most_beyond) refuse("samples lie {} steps beyond the end of their ray", beyond);
-  if (beyond > 0 && std::ranges::find(volume.wrap, Wrap::repeat) != volume.wrap.end())
-    refuse("samples lie beyond the end of their ray in a texture that repeats");
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (beyond > 0 && ends_with_texture(volume, request, axis))
+      refuse("samples lie beyond the end of their ray in {}", words_for(volume.wrap[axis]));
   if (!is_all_of_texture(request.region, volume.size))
     refuse("samples that may lie beyond the end of their ray, in a region that is not the whole texture");
   if (!request.clip_planes.empty() || has_segments(request))
@@ -165,10 +178,10 @@ void validate_slice_segment(const VolumeDescription& volume, const RenderRequest
           "segments of {} texels along axis {} in a volume that was sent with a ghost layer of {}: send it "
           "again",
           cells, axis, volume.ghost_layer);
-    if (volume.wrap[axis] == Wrap::repeat && cells > 0 &&
+    if (ends_with_texture(volume, request, axis) && cells > 0 &&
         (request.region.low[axis] - slice_segment.reach[axis] < 0 ||
          request.region.high[axis] + slice_segment.reach[axis] > 1))
-      refuse("segments reach beyond a repeating texture along axis {}", axis);
+      refuse("segments reach beyond {} along axis {}", words_for(volume.wrap[axis]), axis);
   }
 }
 
@@ -231,12 +244,12 @@ void validate_places(const RenderRequest& request) {
 void validate_region(const VolumeDescription& volume, const RenderRequest& request) {
   if (!are_finite(request.region.low) || !are_finite(request.region.high))
     refuse("the region of the slices holds a value that is not finite");
-  for (int axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     constexpr double slack = 1e-6;
-    if (volume.wrap[axis] == Wrap::repeat &&
+    if (ends_with_texture(volume, request, axis) &&
         (request.region.low[axis] < -slack || request.region.high[axis] > 1 + slack))
-      refuse("slices reach beyond a repeating texture along axis {} ({} to {})", axis, request.region.low[axis],
-             request.region.high[axis]);
+      refuse("slices reach beyond {} along axis {} ({} to {})", words_for(volume.wrap[axis]), axis,
+             request.region.low[axis], request.region.high[axis]);
   }
   if (request.clip_planes.size() > max_clip_planes)
     refuse("{} clip planes (at most {} are possible)", request.clip_planes.size(), max_clip_planes);

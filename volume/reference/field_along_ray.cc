@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include "volume/matrix.h"
 
@@ -63,6 +62,14 @@ std::vector<double> crossings(const Cubic& cubic, double value) {
   return found;
 }
 
+std::array<int, 2> faces_between(double a, double b, int size) {
+  // In this order, std::max and std::min replace NaN.
+  const double low = std::max(-1.0, std::ceil(std::min(a, b)));
+  const double high = std::min(double(size), std::floor(std::max(a, b)));
+  if (low > high) return {0, -1};
+  return {int(low), int(high)};
+}
+
 std::vector<Stretch> field_along_ray(const Field& field, const std::array<int, 3>& size, const Vec3& from,
                                      const Vec3& to, double length) {
   std::vector<double> cuts{0, 1};
@@ -70,8 +77,8 @@ std::vector<Stretch> field_along_ray(const Field& field, const std::array<int, 3
   for (std::size_t k = 0; k < 3; ++k) {
     if (way[k] == 0) continue;
     const double a = from[k] * size[k] - 0.5, b = to[k] * size[k] - 0.5;
-    const auto first = std::int64_t(std::ceil(std::min(a, b))), last = std::int64_t(std::floor(std::max(a, b)));
-    for (std::int64_t face = first; face <= last; ++face) {
+    const auto [first, last] = faces_between(a, b, size[k]);
+    for (int face = first; face <= last; ++face) {
       const double s = ((double(face) + 0.5) / size[k] - from[k]) / way[k];
       if (s > 0 && s < 1) cuts.push_back(s);
     }

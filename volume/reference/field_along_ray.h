@@ -23,6 +23,11 @@ struct Stretch {
   std::array<Cubic, 4> value{};  ///< a scalar field uses the first
 };
 
+/// The lowest and the highest of the faces between cells that a path from `a` to `b`, positions along an axis
+/// of `size` texels, may cross; low > high: none. Faces lie at whole positions. Beyond -1 and `size` there are
+/// none, because the field is constant along the axis there.
+std::array<int, 2> faces_between(double a, double b, int size);
+
 /// The stretches of the straight path between two points of texture space, which is `length` long, in order.
 /// Cells in which the field is NaN are skipped. `size` is the texture's, in texels.
 std::vector<Stretch> field_along_ray(const Field& field, const std::array<int, 3>& size, const Vec3& from,

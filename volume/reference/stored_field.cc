@@ -50,7 +50,8 @@ class OwnCells {
   bool find(const Vec3& middle, std::array<int, 3>& cell) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const int low = lattice_.origin[axis], last = low + lattice_.cells[axis] - 1;
-      cell[axis] = int(std::clamp(std::floor(middle[axis]), double(low), double(last)));
+      // In this order, NaN, the middle of a path that is too long for a double, becomes `last`.
+      cell[axis] = int(std::max(double(low), std::min(double(last), std::floor(middle[axis]))));
       if (cell[axis] < owned_.low[axis] || cell[axis] >= owned_.high[axis]) return false;
     }
     return true;
@@ -115,14 +116,12 @@ class OwnCells {
 };
 
 /// The positions, as fractions of the path, where the ray passes from one cell to the next; includes 0 and 1.
-std::vector<double> faces_on(const Vec3& begin, const Vec3& way) {
+std::vector<double> faces_on(const Vec3& begin, const Vec3& way, const std::array<int, 3>& size) {
   std::vector<double> cuts{0, 1};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (way[axis] == 0) continue;
-    const double end = begin[axis] + way[axis];
-    const auto first = std::int64_t(std::ceil(std::min(begin[axis], end))),
-               last = std::int64_t(std::floor(std::max(begin[axis], end)));
-    for (std::int64_t face = first; face <= last; ++face) {
+    const auto [first, last] = faces_between(begin[axis], begin[axis] + way[axis], size[axis]);
+    for (int face = first; face <= last; ++face) {
       const double s = (double(face) - begin[axis]) / way[axis];
       if (s > 0 && s < 1) cuts.push_back(s);
     }
@@ -143,7 +142,7 @@ std::vector<Stretch> stored_field_along_ray(const BrickStore& store, const Vec3&
     begin[axis] = from[axis] * size[axis] - 0.5;
     way[axis] = (to[axis] - from[axis]) * size[axis];
   }
-  const std::vector<double> cuts = faces_on(begin, way);
+  const std::vector<double> cuts = faces_on(begin, way, size);
   const OwnCells cells(store);
   std::array<int, 3> cell{};
   Corners corners;

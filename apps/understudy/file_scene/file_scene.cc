@@ -297,12 +297,12 @@ volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& im
   const bool segments = request.method == volume::Method::pre_integrated;
   volume::TransferFunction table =
       sampled(segments ? spanning(image.control_points, low, high) : image.control_points, low, high, 1);
-  table.low = float(scene.mapping.normalised(table.low));
-  table.high = float(scene.mapping.normalised(table.high));
-  if (table.low > table.high) {  // texels decrease with increasing values
-    std::swap(table.low, table.high);
+  double first = scene.mapping.normalised(table.low), last = scene.mapping.normalised(table.high);
+  if (first > last) {  // texels decrease with increasing values
+    std::swap(first, last);
     std::ranges::reverse(table.entries);
   }
+  set_range(table, first, last);
   // The medium is the same at every step size: opacity is linear between entries for one voxel's length.
   request.classification = opacity_corrected(table, image.step, table.entries.size());
   if (image.bounds_error) request.bound_of = {std::move(table), image.step};

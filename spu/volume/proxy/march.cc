@@ -389,8 +389,12 @@ void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::B
 
 bool MarchMeasurement::may_count_ahead(const volume::RaySteps& rule, const volume::Box& region) const {
   if (!volume::is_all_of_texture(region, measured_.texture.size)) return false;
-  return !rule.any_beyond_end() ||
-         std::ranges::find(measured_.texture.wrap, volume::Wrap::repeat) == measured_.texture.wrap.end();
+  // validate() refuses samples beyond such textures.
+  const auto ends = [&](volume::Wrap wrap) {
+    return wrap == volume::Wrap::repeat ||
+           (wrap == volume::Wrap::border && measured_.texture.filter == volume::Filter::nearest);
+  };
+  return !rule.any_beyond_end() || std::ranges::none_of(measured_.texture.wrap, ends);
 }
 
 MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& spaces,

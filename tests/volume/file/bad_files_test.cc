@@ -41,6 +41,8 @@ TEST(BadFiles, WrongLengthsSayWhatWasExpectedAndWhatWouldFit) {
   EXPECT_THAT(trouble_with(folder.write("unknown.raw", scalars)), HasSubstr("--volume-size"));
   EXPECT_THAT(trouble_with(folder.write("e_70000x1x1_u8.raw", scalars)), HasSubstr("not 1 to 16384"));
   EXPECT_THAT(trouble_with(folder.write("e_0x1x1_u8.raw", scalars)), HasSubstr("not 1 to 16384"));
+  EXPECT_THAT(trouble_with(folder.write("e_4194304x2097152x2097152.raw", scalars)), HasSubstr("not 1 to 16384"))
+      << "a product of 2^64";
   EXPECT_THAT(trouble_with(folder.file("missing_4x3x2.raw")), HasSubstr("check the path"));
   EXPECT_THAT(trouble_with(std::filesystem::path(folder.file("x")).parent_path()), HasSubstr("is a folder"));
 }

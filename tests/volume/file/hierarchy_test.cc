@@ -353,6 +353,27 @@ TEST(HierarchicalVolume, TellsBetweenWhichValuesABoxLies) {
   }
 }
 
+TEST(HierarchicalVolume, InfiniteScalarsBoundTheirBoxesButNotTheRangeOfTheVolume) {
+  const Size size{150, 70, 40};
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (const float extreme : {infinity, -infinity}) {
+    std::vector<float> values = smooth_field<float>(size, -3, 100);
+    values[149] = extreme;  // an odd sample: of the finest level alone
+    const TemporaryFolder folder;
+    const std::string path = converted(folder, size, ScalarType::f32, bytes_of(values));
+    for (const int level : {0, 1}) {
+      const auto file = open_volume(path, {.level = level});
+      EXPECT_FALSE(file->description().values) << level;
+      const auto told = file->values_in(whole(*file));
+      ASSERT_TRUE(told);
+      EXPECT_EQ((*told)[extreme > 0 ? 1 : 0], double(extreme));
+      const auto elsewhere = file->values_in({{0, 0, 0}, {64 >> level, 64 >> level, 40 >> level}});
+      ASSERT_TRUE(elsewhere);
+      EXPECT_TRUE(std::isfinite((*elsewhere)[0]) && std::isfinite((*elsewhere)[1])) << level;
+    }
+  }
+}
+
 TEST(HierarchicalVolume, OfAnotherVersionIsRefusedByName) {
   const Size size{8, 8, 8};
   const TemporaryFolder folder;

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "tests/volume/file/volume_files.h"
+#include "volume/brick/brick_store.h"
 #include "volume/file/file_error.h"
 #include "volume/opening/open_volume.h"
 #include "volume/texel_box.h"
@@ -166,10 +167,15 @@ TEST(TexelStream, WhatIsNoNumberIsCountedAndStaysNone) {
   EXPECT_EQ(floats.figures.not_numbers, 2U);
   EXPECT_TRUE(std::isnan(floats.value<float>(1)));
   EXPECT_EQ(floats.figures.low, -1);
+  EXPECT_EQ(floats.figures.high, 2) << "infinity is not the end of a range";
+  EXPECT_EQ(floats.value<float>(3), BrickStore::largest_value);
   const Result bytes = streamed(name, {TexelType::u8, {{-1, 2}}});
   EXPECT_EQ(bytes.figures.not_numbers, 2U);
   EXPECT_EQ(bytes.value<std::uint8_t>(1), -1) << "the least texel";
   EXPECT_EQ(bytes.value<std::uint8_t>(3), 2) << "the greatest";
+  const Result none = streamed(written(folder, "f32", std::vector<float>{-infinity, infinity}));
+  EXPECT_GT(none.figures.low, none.figures.high);
+  EXPECT_EQ(none.value<float>(0), -BrickStore::largest_value);
 }
 
 }  // namespace

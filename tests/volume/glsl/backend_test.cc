@@ -4,10 +4,14 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
+#include <vector>
+
 #include "tests/volume/scenes.h"
 #include "volume/frame_counts.h"
 #include "volume/glsl/device.h"
 #include "volume/image.h"
+#include "volume/occlusion.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/request.h"
 
@@ -41,6 +45,19 @@ bool has_opengl() {
   }
 }
 
+/// Hides nothing, and counts how often it is asked.
+class Asked final : public Occlusion {
+ public:
+  bool hides(const Rect& /*pixels*/) override {
+    ++times;
+    return false;
+  }
+  void cover(const Rect& /*pixels*/) override {}
+  bool from_the_end() const override { return false; }
+
+  std::atomic<int> times = 0;
+};
+
 class Told : public ::testing::Test {
  protected:
   Told()
@@ -63,6 +80,20 @@ class Told : public ::testing::Test {
       worst = std::max(worst, difference(image, expected).max);
     }
     return worst;
+  }
+
+  /// Draws an image of each of `requests`; returns by which of them the occlusion was asked.
+  std::vector<bool> asked(BackendChooser& chooser, const std::vector<RenderRequest>& requests) {
+    const auto renderer = chooser.factory()(store_);
+    std::vector<bool> by;
+    for (const RenderRequest& request : requests) {
+      Image image(request.window);
+      FrameCounts counts;
+      Asked occlusion;
+      renderer->render(request, image, counts, &occlusion);
+      by.push_back(occlusion.times > 0);
+    }
+    return by;
   }
 
   BackendChooser::Tell tell() {
@@ -108,6 +139,20 @@ TEST_F(Told, WhatOpenGlLacksTheCpuDraws) {
   EXPECT_THAT(told_, ElementsAre("CPU: the GL backend does not draw fog"));
 }
 
+TEST_F(Told, OcclusionIsGivenUpOnlyForImagesThatAreCompared) {
+  request_.termination = RenderRequest{}.termination;
+  RenderRequest small = request_, foggy = request_;
+  small.planes.count = 3;
+  foggy.fog = Fog{{0, 0, 1}, 0, {{0, 0, 0, 1}, {1, 1, 1, 0}}};
+  BackendChooser cpu(Backend::cpu, tell());
+  EXPECT_THAT(asked(cpu, {request_}), ElementsAre(true)) << "such images are occluded";
+  BackendChooser few_samples(Backend::automatic, tell());
+  EXPECT_THAT(asked(few_samples, {small, small, small}), ElementsAre(false, true, true));
+  // Two images on the CPU; then OpenGL, which does not draw fog, or has no device.
+  BackendChooser obstructed(Backend::automatic, tell());
+  EXPECT_THAT(asked(obstructed, {foggy, foggy, foggy, foggy}), ElementsAre(false, false, true, true));
+}
+
 TEST_F(Told, SenselessRequestsAreRefusedAsByTheCpu) {
   BackendChooser chooser(Backend::gl, tell());
   const auto renderer = chooser.factory()(store_);
@@ -115,6 +160,24 @@ TEST_F(Told, SenselessRequestsAreRefusedAsByTheCpu) {
   Image image(request_.window);
   FrameCounts counts;
   EXPECT_THROW(renderer->render(request_, image, counts), std::invalid_argument);
+}
+
+TEST_F(Told, SamplesBeyondABorderWithoutFilterAreRefused) {
+  texture_.description.wrap.fill(Wrap::border);
+  const BrickStore bordered = filled(texture_);
+  request_.steps.emplace().metric = {60, 0, 0, 0, 60, 0, 0, 0, 60};
+  request_.steps->first = 0.5;
+  request_.steps->counted_from = 0;
+  Image image(request_.window);
+  FrameCounts counts;
+  for (const Backend backend : {Backend::cpu, Backend::gl}) {
+    BackendChooser chooser(backend, tell());
+    const auto renderer = chooser.factory()(bordered);
+    request_.filter = Filter::linear;
+    EXPECT_NO_THROW(renderer->render(request_, image, counts));
+    request_.filter = Filter::nearest;
+    EXPECT_THROW(renderer->render(request_, image, counts), std::invalid_argument);
+  }
 }
 
 TEST(BackendNames, AreThoseOfTheCommandLine) {

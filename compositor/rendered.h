@@ -11,6 +11,7 @@ struct Rendered {
   volume::ImageView image;  ///< over its footprint only; valid until the service's next call but integrals()
   volume::FrameCounts counts;
   bool repeated = false;  ///< no rays were cast: the image existed already
+  bool lossy = false;     ///< sent as JPEG, because its view moved; RenderRequest::exact prevents it
 };
 
 }  // namespace understudy::compositor

@@ -69,6 +69,10 @@ struct RenderRequest {
   std::optional<DepthImage> depth;
   /// Nodes may exchange half floats instead of floats, each rounded to 2^-11 of its value.
   bool may_travel_as_halves = false;
+  /// The image must arrive as it was computed, whatever nodes and connections were told (`--pixels`,
+  /// `--quality`): without loss and in floats, but for `may_travel_as_halves`. For images that are compared, or
+  /// whose error is bounded.
+  bool exact = false;
   /// If set, the image holds certified bounds. Each colour channel is a bound on the difference of any channel
   /// from the integral of this medium (error_bound/error_bound.h), and alpha is a lower bound of the opacity;
   /// parts of such an image composite like colours. For samples that cover whole rays, with a ghost layer
@@ -78,6 +82,17 @@ struct RenderRequest {
 
   bool operator==(const RenderRequest&) const = default;
 };
+
+/// Whether the image must arrive as it was computed. A bound that was rounded would bound nothing.
+inline bool must_be_exact(const RenderRequest& request) {
+  return request.exact || request.bound_of.has_value();
+}
+
+/// Returns the request for the same image, exact.
+inline RenderRequest exactly(RenderRequest request) {
+  request.exact = true;
+  return request;
+}
 
 /// Whether the samples of a request on steps can cover their whole rays (RaySteps::cover_whole_ray).
 inline bool may_cover_whole_rays(const RenderRequest& request) {

@@ -127,10 +127,12 @@ void add_options(CLI::App& app, NodeOptions& options) {
 }
 
 void print_move(const compositor::MoveFigures& move) {
+  const std::string reason = move.deviation ? fmt::format("because times deviated by {:.2f}", *move.deviation)
+                                            : "by expected costs, before any time was measured";
   fmt::print(stderr,
-             "node 0: volume {}: moved {} planes, because times deviated by {:.2f}; received {} blocks ({} "
-             "bytes), reused {} earlier ones; {:.1f} ms\n",
-             move.volume, move.planes, move.deviation, move.blocks_received, move.bytes_received,
+             "node 0: volume {}: moved {} planes, {}; received {} blocks ({} bytes), reused {} earlier ones; "
+             "{:.1f} ms\n",
+             move.volume, move.planes, reason, move.blocks_received, move.bytes_received,
              move.blocks_from_cache, move.ms);
   std::fflush(stderr);
 }

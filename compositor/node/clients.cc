@@ -23,6 +23,16 @@ bool is_request(const MessageType& type) {
          type == LoadMessage::histogram;
 }
 
+void refuse_one_too_many(FileDescriptor application) {
+  const std::string reason = fmt::format("{} applications are served already", limits::max_clients);
+  try {
+    Connection(std::move(application), service_protocols)
+        .send(LauncherMessage::refused, 0, encode_text(reason), Connection::now_or_never());
+  } catch (const ConnectionLost&) {
+    // Gone while it waited.
+  }
+}
+
 }  // namespace
 
 Clients::Clients(const std::string& control_path, int ranks, std::chrono::milliseconds stall_patience)
@@ -107,9 +117,7 @@ bool Clients::hear_launcher() {
     while (std::optional<Message> message = launcher_.receive_some()) {
       if (message->type != LauncherMessage::client || !message->attached) continue;
       if (clients_.size() >= limits::max_clients) {
-        const std::string reason = fmt::format("{} applications are served already", limits::max_clients);
-        Connection(std::move(message->attached), service_protocols)
-            .send(LauncherMessage::refused, 0, encode_text(reason), Connection::now_or_never());
+        refuse_one_too_many(std::move(message->attached));
         continue;
       }
       const std::uint64_t number = ++last_number_;

@@ -5,11 +5,14 @@
 
 #include "compositor/exchange/exchange.h"
 #include "compositor/exchange/measure_message_cost.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 
-Layout Compositing::layout(bool may_travel_as_halves) const {
-  return may_travel_as_halves && settings_.layout == Layout::rgba32f ? Layout::rgba16f : settings_.layout;
+Layout Compositing::layout(const volume::RenderRequest& request) const {
+  if (request.bound_of) return Layout::rgba32f;
+  const Layout layout = request.exact ? Layout::rgba32f : settings_.layout;
+  return request.may_travel_as_halves && layout == Layout::rgba32f ? Layout::rgba16f : layout;
 }
 
 void Compositing::prepare() {

@@ -17,6 +17,10 @@
 #include "volume/frame_counts.h"
 #include "volume/image.h"
 
+namespace understudy::volume {
+struct RenderRequest;
+}
+
 namespace understudy::compositor {
 
 /// One image; the same on all ranks.
@@ -35,8 +39,9 @@ class Compositing {
   Compositing(Communicator& communicator, const ExchangeSettings& settings)
       : communicator_(communicator), settings_(settings) {}
 
-  /// Returns the layout of an image; half floats if the request allows them and the settings say floats.
-  Layout layout(bool may_travel_as_halves) const;
+  /// Returns the layout of an image: that of the settings, but floats if it must be exact; half floats instead
+  /// of floats if the request allows them. Bounds of errors are always floats.
+  Layout layout(const volume::RenderRequest& request) const;
 
   /// Collective, before anything else: measures message costs, once.
   void prepare();

@@ -71,7 +71,7 @@ void RankLoop::begin_image(std::uint64_t client) {
   task_ = {client,
            request_.op,
            intersection(request_.window, request_.viewport),
-           compositing_.layout(request_.may_travel_as_halves),
+           compositing_.layout(request_),
            request_.optimizations.footprints,
            renderer_.visibility_order(client, request_)};
   footprints_ = renderer_.footprints(client, request_);

@@ -60,8 +60,8 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-double deviation(std::span<const RankWork> work) {
-  if (work.empty()) return 0;
+std::optional<double> deviation(std::span<const RankWork> work) {
+  if (work.empty()) return std::nullopt;
   double least = work[0].ms, most = work[0].ms, sum = 0;
   for (const RankWork& rank : work) {
     least = std::min(least, rank.ms);
@@ -191,13 +191,17 @@ volume::RenderRequest Rebalancer::before_image(std::uint64_t client,
   const volume::RenderRequest& request = *expected.request;
   Volume& volume = *expected.volume;
   try {
+    const std::vector<RankWork> work = std::exchange(volume.work, {});  // used once
     const Partition now = renderer_.partition(client, request);
-    const Partition next = volume.balancer->decide({now, expected.costs->lattice(), volume.work,
-                                                    *expected.costs, volume.ms_per_block, volume.most_blocks});
-    volume.work.clear();  // used once
+    const Partition next = volume.balancer->decide(
+        {now, expected.costs->lattice(), work, *expected.costs, volume.ms_per_block, volume.most_blocks});
     volume.images_since = 0;
     if (settings_.balance == Balance::off) volume.cut_for = appearance(request);
-    if (next != now) move({client, request.volume}, volume, request, next);
+    if (next != now) {
+      MoveFigures figures = move({client, request.volume}, volume, request, next);
+      figures.deviation = deviation(work);
+      settings_.moved(figures);
+    }
   } catch (const RankLost&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -224,12 +228,11 @@ void Rebalancer::after_image(VolumeKey key, std::span<const RankWork> work) {
     volume->second.work.assign(work.begin(), work.end());
 }
 
-void Rebalancer::move(VolumeKey key, Volume& volume, const volume::RenderRequest& request,
-                      const Partition& next) {
+MoveFigures Rebalancer::move(VolumeKey key, Volume& volume, const volume::RenderRequest& request,
+                             const Partition& next) {
   const auto start = Clock::now();
   MoveFigures figures;
   figures.volume = key.volume;
-  figures.deviation = deviation(volume.work);
   const BrickStore& bricks = renderer_.bricks(key.client, request);
   const volume::VolumeDescription& description = bricks.description();
   const Partition& now = renderer_.partition(key.client, request);
@@ -254,7 +257,7 @@ void Rebalancer::move(VolumeKey key, Volume& volume, const volume::RenderRequest
     const double now = ms / double(most_moved);
     volume.ms_per_block = volume.ms_per_block > 0 ? (volume.ms_per_block + now) / 2 : now;
   }
-  settings_.moved(figures);
+  return figures;
 }
 
 /// Blocks to be sent between this rank and each other one.

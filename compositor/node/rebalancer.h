@@ -28,7 +28,8 @@ struct MoveFigures {
   std::size_t blocks_from_cache = 0;  ///< given away before, and still in the cache
   std::size_t bytes_received = 0;
   double ms = 0;
-  double deviation = 0;  ///< (max - min) / mean of the ranks' times, in the image before
+  /// (max - min) / mean of the ranks' times in the image before; empty: none was measured.
+  std::optional<double> deviation;
 };
 
 struct BalanceSettings {
@@ -94,7 +95,8 @@ class Rebalancer {
   Volume& volume_of(VolumeKey key);
   void expect(std::uint64_t client, const std::function<volume::RenderRequest()>& decode, Expected& expected);
   void gather_costs(Expected& expected);
-  void move(VolumeKey key, Volume& volume, const volume::RenderRequest& request, const volume::Partition& next);
+  MoveFigures move(VolumeKey key, Volume& volume, const volume::RenderRequest& request,
+                   const volume::Partition& next);
   void send_blocks(Volume& volume, const volume::BrickStore& bricks, std::span<const volume::TexelBox> before,
                    std::span<const volume::TexelBox> after,
                    std::map<BlockPlace, std::vector<std::byte>>& received, MoveFigures& figures);

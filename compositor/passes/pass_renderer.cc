@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -94,7 +95,12 @@ void PassRenderer::load_part(int part) {
   ++figures_.loads;
   Values& values = values_[std::size_t(part)];
   values = {1, 0};
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   for (const RankLoad& rank : ranks) {
+    if (std::isinf(rank.largest_error)) {  // infinite values, which are clamped, count for no range
+      values = {-infinity, infinity};
+      break;
+    }
     if (rank.low > rank.high) continue;
     values = values[0] > values[1] ? Values{rank.low, rank.high}
                                    : Values{std::min(values[0], rank.low), std::max(values[1], rank.high)};
@@ -195,6 +201,7 @@ std::vector<PassRenderer::Composite> PassRenderer::composites(std::span<const Re
       const Rendered shown = service_.render(*request);
       blend(request->op, composites[i].image, shown.image);
       composites[i].counts += shown.counts;
+      composites[i].lossy |= shown.lossy;
       add_image_figures();
     }
     if (!shows)
@@ -209,7 +216,7 @@ Rendered PassRenderer::render(const RenderRequest& request) {
   if (parts_.ranks() == 1) return service_.render(request);
   Composite composite = std::move(composites({&request, 1}).front());
   image_ = std::move(composite.image);
-  return {image_.view(), composite.counts};
+  return {image_.view(), composite.counts, false, composite.lossy};
 }
 
 std::vector<volume::Image> PassRenderer::images(std::span<const RenderRequest> requests) {

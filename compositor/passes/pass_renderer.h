@@ -69,6 +69,7 @@ class PassRenderer : public ImageService {
   struct Composite {
     volume::Image image;
     volume::FrameCounts counts;
+    bool lossy = false;
   };
   /// Returns the request for the pixels in which this part can show something; null if there are none.
   std::optional<volume::RenderRequest> request_of_part(const volume::RenderRequest& request,

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <functional>
+#include <string_view>
 
 #include "compositor/exchange/pixel_numbers.h"
 #include "compositor/relay/jpeg.h"
 #include "compositor/service/limits.h"
+#include "compositor/service/request_message.h"
 #include "compositor/service/service_protocols.h"
 
 namespace understudy::compositor {
@@ -16,7 +19,8 @@ namespace {
 
 /// Smaller images are not worth a JPEG's tables.
 constexpr std::size_t least_jpeg_pixels = 4096;
-constexpr double newest_packing_counts = 0.25;  ///< weight of the newest measurement
+/// A viewer that shows several volumes requests their images in turn.
+constexpr std::size_t remembered_requests = 4;
 
 struct ImageHead {
   std::uint32_t reply_bytes = 0;  ///< of the message as the nodes made it
@@ -148,8 +152,8 @@ void ApplicationRelay::carry_back(Message message) {
 void NodesRelay::carry_back(Message message) {
   if (message.type == LauncherMessage::hello_nodes) throw MalformedMessage("wants to be the nodes");
   if (message.type == NodeMessage::render) {
-    repeats_ = message.payload == last_request_;
-    last_request_ = message.payload;
+    exact_ = asks_for_exact_image(message.payload);
+    repeats_ = connection_request_.jpeg_quality > 0 && repeats(message.payload);
   }
   if (message.type != NodeMessage::image_buffer) return Relay::carry_back(std::move(message));
   const std::uint64_t bytes = decode_size(message.payload);
@@ -160,13 +164,39 @@ void NodesRelay::carry_back(Message message) {
   memory_ = shared(std::move(memory));
 }
 
-ImageCoding NodesRelay::coding_of(std::size_t pixels) const {
-  const bool moves = !repeats_;
-  if (moves && connection_request_.jpeg_quality > 0 && pixels >= least_jpeg_pixels) return ImageCoding::jpeg;
-  if (connection_request_.pixels != Layout::rgba32f) return ImageCoding::packed;
-  const double line = line_bytes_per_second();
-  if (line <= 0) return ImageCoding::floats;
-  return packed_seconds_per_byte_ + packed_ratio_ / line < 1 / line ? ImageCoding::packed : ImageCoding::floats;
+/// Returns whether the request is among the last ones, and remembers it as the latest. Another request with the
+/// same hash would only be answered without loss.
+bool NodesRelay::repeats(Bytes request) {
+  const std::string_view text(reinterpret_cast<const char*>(request.data()), request.size());
+  const std::size_t hash = std::hash<std::string_view>()(text);
+  const auto known = std::ranges::find(last_requests_, hash);
+  if (known != last_requests_.end()) {
+    std::rotate(known, known + 1, last_requests_.end());
+    return true;
+  }
+  if (last_requests_.size() == remembered_requests) last_requests_.erase(last_requests_.begin());
+  last_requests_.push_back(hash);
+  return false;
+}
+
+ImageCoding NodesRelay::coding_of(const volume::Rect& rect) {
+  if (rect.empty()) return ImageCoding::floats;
+  const bool fits = std::max(rect.width, rect.height) <= max_jpeg_extent && rect.pixels() >= least_jpeg_pixels;
+  if (connection_request_.jpeg_quality > 0 && fits && !exact_ && !repeats_) return ImageCoding::jpeg;
+  if (connection_request_.pixels != Layout::rgba32f && !exact_) return ImageCoding::packed;
+  return packing_.pays(line_bytes_per_second()) ? ImageCoding::packed : ImageCoding::floats;
+}
+
+/// Returns a view of the encoded image, valid until the next call.
+Bytes NodesRelay::coded(std::span<const float> pixels, int width, ImageCoding coding, Layout layout) {
+  if (coding == ImageCoding::floats) return std::as_bytes(pixels);
+  const auto start = Clock::now();
+  coded_.clear();
+  encode_image(pixels, width, coding, layout, connection_request_.jpeg_quality, coded_);
+  const std::chrono::duration<double> took = Clock::now() - start;
+  if (coding == ImageCoding::packed && layout == Layout::rgba32f)
+    packing_.packed(took.count(), pixels.size_bytes(), coded_.size());
+  return coded_;
 }
 
 bool NodesRelay::needs_whole(const MessageType& type) const {
@@ -175,31 +205,17 @@ bool NodesRelay::needs_whole(const MessageType& type) const {
 
 void NodesRelay::carry_out(Message message) {
   if (message.type != NodeMessage::rendered) return Relay::carry_out(std::move(message));
-  const RenderedReply rendered = decode_rendered(message.payload);
+  RenderedReply rendered = decode_rendered(message.payload);
   const std::shared_ptr<ImageBuffer> memory = memory_;
   const std::span<const float> pixels = room_for(rendered, memory ? memory->floats() : std::span<float>());
-  ImageHead head{std::uint32_t(message.payload.size()), ImageCoding::floats, connection_request_.pixels};
-  coded_.clear();
-  Bytes image = std::as_bytes(pixels);
-  if (!pixels.empty()) {
-    head.coding = coding_of(pixels.size() / 4);
-    const bool fits = rendered.rect.width <= max_jpeg_extent && rendered.rect.height <= max_jpeg_extent;
-    if (head.coding == ImageCoding::jpeg && !fits) head.coding = ImageCoding::packed;
-    if (head.coding != ImageCoding::floats) {
-      const auto start = Clock::now();
-      encode_image(pixels, rendered.rect.width, head.coding, head.layout, connection_request_.jpeg_quality,
-                   coded_);
-      const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-      if (head.coding == ImageCoding::packed && head.layout == Layout::rgba32f) {
-        // Unpacking takes about as long.
-        packed_seconds_per_byte_ +=
-            newest_packing_counts * (2 * seconds / double(image.size()) - packed_seconds_per_byte_);
-        packed_ratio_ += newest_packing_counts * (double(coded_.size()) / double(image.size()) - packed_ratio_);
-      }
-      image = coded_;
-    }
-  }
-  const std::array<Bytes, 3> parts = {std::as_bytes(std::span(&head, 1)), message.payload, image};
+  ImageHead head;
+  head.coding = coding_of(rendered.rect);
+  head.layout = exact_ ? Layout::rgba32f : connection_request_.pixels;
+  rendered.lossy = head.coding == ImageCoding::jpeg;
+  const std::vector<std::byte> reply = encode(rendered);
+  head.reply_bytes = std::uint32_t(reply.size());
+  const std::array<Bytes, 3> parts = {std::as_bytes(std::span(&head, 1)), reply,
+                                      coded(pixels, rendered.rect.width, head.coding, head.layout)};
   send_tcp(message, parts);
 }
 

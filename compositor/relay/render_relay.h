@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Relays between applications and node groups. The image buffer has one half at each end: the application's
 // own, and one that the server's relay makes for the nodes. An image is sent as numbers (packed as between
-// nodes where that is faster, or narrower: ConnectionRequest::pixels), or as JPEG while requests differ.
+// nodes where that is faster, or narrower: ConnectionRequest::pixels), or as JPEG while requests differ. Images
+// that must be exact (RenderRequest::exact) are sent as floats, packed or not.
 //
 // After the payload of a `rendered` message come the coding (ImageCoding) and the bytes of its image.
 #pragma once
 
 #include <memory>
 
+#include "compositor/relay/packing_choice.h"
 #include "compositor/service/image_buffer.h"
 #include "compositor/transport/tcp/relay.h"
+#include "volume/rect.h"
 
 namespace understudy::compositor {
 
@@ -47,15 +50,18 @@ class NodesRelay : public Relay {
   void carry_back(Message message) override;
 
  private:
-  ImageCoding coding_of(std::size_t pixels) const;
+  bool repeats(Bytes request);
+  ImageCoding coding_of(const volume::Rect& rect);
+  Bytes coded(std::span<const float> pixels, int width, ImageCoding coding, Layout layout);
 
   ConnectionRequest connection_request_;
   std::atomic<std::shared_ptr<ImageBuffer>> memory_;
-  std::vector<std::byte> last_request_;
-  std::atomic<bool> repeats_ = false;  ///< the last request equals the one before: send without loss
+  std::vector<std::size_t> last_requests_;  ///< hashes, the latest last
+  // Of the image that is being rendered:
+  std::atomic<bool> exact_ = false;    ///< it must be sent as floats
+  std::atomic<bool> repeats_ = false;  ///< its view rests: it is not sent as JPEG
   std::vector<std::byte> coded_;
-  double packed_seconds_per_byte_ = 0.5e-9;
-  double packed_ratio_ = 0.5;
+  PackingChoice packing_;
 };
 
 /// Reads a `rendered` message as it is sent: writes its image to the beginning of `memory`, and returns the

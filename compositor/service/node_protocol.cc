@@ -118,6 +118,7 @@ std::vector<std::byte> encode(const RenderedReply& reply) {
   out.real(counts.render_ms);
   out.real(counts.processor_ms);
   out.real(counts.composite_ms);
+  out.integer(reply.lossy);
   return out.bytes();
 }
 
@@ -136,6 +137,7 @@ RenderedReply decode_rendered(std::span<const std::byte> payload) {
   counts.render_ms = in.real("counts.render_ms");
   counts.processor_ms = in.real("counts.processor_ms");
   counts.composite_ms = in.real("counts.composite_ms");
+  reply.lossy = in.flag("lossy");
   in.end();
   return reply;
 }

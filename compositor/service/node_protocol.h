@@ -41,7 +41,7 @@ enum class NodeMessage : std::uint16_t {
 };
 
 constexpr Protocol protocol_of(NodeMessage) {
-  return {2, 16, std::uint16_t(NodeMessage::last)};
+  return {2, 17, std::uint16_t(NodeMessage::last)};
 }
 
 struct Change {
@@ -59,6 +59,7 @@ struct Texels {
 struct RenderedReply {
   volume::Rect rect;
   volume::FrameCounts counts;
+  bool lossy = false;  ///< a relay has sent it as JPEG, because its view moved
 };
 
 std::vector<std::byte> encode(const volume::VolumeDescription& volume);

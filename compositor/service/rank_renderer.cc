@@ -199,15 +199,15 @@ RankRenderer::Volume& RankRenderer::find_complete(std::uint64_t client, const Re
   return volume;
 }
 
-Arrangement RankRenderer::arranged(const VolumeDescription& description) const {
+Arrangement RankRenderer::arranged(VolumeKey key, const VolumeDescription& description) const {
   // Subtracts what other volumes take of a machine; all ranks compute the same.
   SortSettings sort = sort_;
   // Parts are chosen as large as all ranks together have room for.
   if (description.part) sort.sort = Sort::last;
-  for (const auto& [key, volume] : volumes_) {
-    const VolumeDescription& held = volume->bricks.description();
-    if (held.id == description.id) continue;
-    const std::uint64_t of_machine = stored_bytes(held) / std::uint64_t(volume->arrangement.members());
+  for (const auto& [held, volume] : volumes_) {
+    if (held == key) continue;  // it is replaced
+    const std::uint64_t of_machine =
+        stored_bytes(volume->bricks.description()) / std::uint64_t(volume->arrangement.members());
     sort.bytes_of_machine -= std::min(sort.bytes_of_machine, of_machine);
   }
   return {sort, machines_, stored_bytes(description)};
@@ -223,7 +223,7 @@ void RankRenderer::keep_limits(VolumeKey key, const VolumeDescription& descripti
     in_all += share;
     if (held.client == key.client) of_client += share;
   }
-  const std::uint64_t share = share_of(description, arranged(description), rank_);
+  const std::uint64_t share = share_of(description, arranged(key, description), rank_);
   if (of_client + share > limits_.bytes_of_client)
     throw RequestRefused(
         fmt::format("a node's share of volume {} is {} MiB, and of this client it holds {} MiB and may hold {} "
@@ -248,8 +248,8 @@ void RankRenderer::begin(std::uint64_t client, const VolumeDescription& descript
   // The old volume is freed first: two versions of a large volume need not fit side by side.
   volumes_.erase(key);
   refusing([&] {
-    volumes_.emplace(key, std::make_unique<Volume>(description, rank_, arranged(description), sort_.partition,
-                                                   make_renderer_));
+    volumes_.emplace(key, std::make_unique<Volume>(description, rank_, arranged(key, description),
+                                                   sort_.partition, make_renderer_));
   });
 }
 

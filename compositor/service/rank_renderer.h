@@ -119,7 +119,7 @@ class RankRenderer {
   struct Volume;
 
   int ranks() const { return int(machines_.size()); }
-  Arrangement arranged(const volume::VolumeDescription& description) const;
+  Arrangement arranged(VolumeKey key, const volume::VolumeDescription& description) const;
   void keep_limits(VolumeKey key, const volume::VolumeDescription& description) const;
   void keep_image_limits(const volume::RenderRequest& request) const;
   /// Runs `work` for the current image. Throws RequestRefused if that exceeds the time limit.

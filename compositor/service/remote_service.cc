@@ -150,7 +150,7 @@ class RemoteRenderService : public LoadingService {
     if (floats > image_.floats().size() ||
         (floats > 0 && intersection(rendered.rect, wanted.window) != rendered.rect))
       lose("answered with an image that does not fit the window");
-    return {{rendered.rect, image_.floats().first(floats)}, rendered.counts};
+    return {{rendered.rect, image_.floats().first(floats)}, rendered.counts, false, rendered.lossy};
   }
 
   std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest& wanted,

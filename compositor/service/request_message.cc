@@ -309,6 +309,7 @@ KeptPreIntegrationTable decode_pre_integration_table(std::span<const std::byte> 
 
 std::vector<std::byte> encode(const RenderRequest& request, std::optional<int> table_at) {
   Writer out;
+  out.integer(must_be_exact(request));
   out.integer(std::int64_t(request.volume));
   out.integer(std::int64_t(request.version));
   write(out, request.texture_to_clip);
@@ -352,9 +353,14 @@ std::vector<std::byte> encode(const RenderRequest& request, std::optional<int> t
   return out.bytes();
 }
 
+bool asks_for_exact_image(std::span<const std::byte> payload) {
+  return Reader("render request", payload).flag("exact");
+}
+
 RenderRequest decode_request(std::span<const std::byte> payload, std::span<const PreIntegrationTable> kept) {
   Reader in("render request", payload);
   RenderRequest request;
+  request.exact = in.flag("exact");
   request.volume = in.word("volume");
   request.version = in.word("version");
   read(in, "texture_to_clip", request.texture_to_clip);

@@ -25,10 +25,13 @@ std::vector<std::byte> encode(const KeptPreIntegrationTable& kept);
 /// With `table_at`, writes the place to which a pre-integration table was sent, instead of the table.
 std::vector<std::byte> encode(const volume::RenderRequest& request, std::optional<int> table_at = {});
 
-// Both throw MalformedMessage. Decoded values are within limits.h.
+// These throw MalformedMessage. Decoded values are within limits.h.
 KeptPreIntegrationTable decode_pre_integration_table(std::span<const std::byte> payload);
 /// `kept` is by place; an empty place has a table of edge 0.
 volume::RenderRequest decode_request(std::span<const std::byte> payload,
                                      std::span<const volume::PreIntegrationTable> kept = {});
+/// Whether the image of an encoded request must arrive as it was computed (volume::must_be_exact()). Relays
+/// need to know, and have no pre-integration tables to decode the whole request.
+bool asks_for_exact_image(std::span<const std::byte> payload);
 
 }  // namespace understudy::compositor

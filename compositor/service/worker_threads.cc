@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compositor/service/worker_threads.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
+
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <exception>
 #include <latch>
+#include <mutex>
 #include <stdexcept>
 #include <thread>
 #include <vector>
 
 #include "compositor/logging/log.h"
+#include "compositor/service/blocked_signals.h"
 
 namespace understudy::compositor {
 namespace {
@@ -25,6 +33,31 @@ bool can_start(std::size_t count) {
   }
   all_tried.count_down();
   return threads.size() == count;
+}
+
+/// How long the threads of oneTBB are waited for, if other loops of the application keep them busy.
+constexpr std::chrono::seconds start_patience{1};
+
+/// Makes oneTBB start its threads with the calling thread's signal mask, by a loop in which each of `parallel`
+/// threads waits for all others. oneTBB keeps its threads until the process ends.
+void start_threads(std::size_t parallel) {
+  static constinit std::mutex starting;
+  static constinit std::size_t started = 1;
+  const std::scoped_lock one_at_a_time(starting);
+  if (parallel <= started) return;
+  const auto until = std::chrono::steady_clock::now() + start_patience;
+  std::mutex mutex;
+  std::condition_variable arrived;
+  std::size_t there = 0;
+  const auto wait_for_all = [&](std::size_t) {
+    std::unique_lock lock(mutex);
+    if (++there == parallel) arrived.notify_all();
+    arrived.wait_until(lock, until, [&] { return there >= parallel; });
+  };
+  tbb::task_arena(static_cast<int>(parallel)).execute([&] {
+    tbb::parallel_for(std::size_t(0), parallel, wait_for_all, tbb::simple_partitioner());
+  });
+  started = parallel;
 }
 
 /// If oneTBB's first initialisation throws, the next call that needs one waits for it for ever: oneTBB is not
@@ -46,7 +79,11 @@ std::size_t allowed_parallelism() {
 
 WorkerThreads::WorkerThreads() {
   const std::size_t parallel = allowed_parallelism();
-  if (can_start(parallel - 1)) return;
+  const BlockedSignals blocked;
+  if (can_start(parallel - 1)) {
+    start_threads(parallel);
+    return;
+  }
   logging::log(logging::Level::warn,
                "{} threads cannot be started, so volumes are rendered on one; raise `ulimit -u` or `ulimit -v`",
                parallel - 1);

@@ -5,7 +5,7 @@
 // of its own: compositor/service/{launcher,node,load}_protocol.h, spu/remote/gl_server_protocol.h,
 // transport/tcp/line_protocol.h. Beside its enum it defines
 //
-//     constexpr Protocol protocol_of(NodeMessage) { return {2, 16, std::uint16_t(NodeMessage::last)}; }
+//     constexpr Protocol protocol_of(NodeMessage) { return {2, 17, std::uint16_t(NodeMessage::last)}; }
 //
 // and its enumerators are then message types.
 #pragma once

@@ -6,6 +6,7 @@
 
 #include "compositor/rendered.h"
 #include "compositor/service.h"
+#include "spu/state_value.h"
 #include "spu/track/share_group.h"
 #include "spu/volume/context/indexed_state.h"
 #include "spu/volume/depth/deferred_depth_write.h"
@@ -186,6 +187,10 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
   volume.verified.schedule.begin(image.inputs, volume::footprint(request, request.region).pixels(),
                                  sample_density(request));
   const bool compared_whole = stages.verifier.whole_due(volume.verified, image.eye_inside, volume.frames);
+  const Options& options = session_->options();
+  // An image within a budget is not compared with the viewer's: its error is measured, if that was requested.
+  const bool measured = options.has_budget() ? options.error > 0 : volume.verified.schedule.sentinels() > 0;
+  request.exact = compared_whole || measured;
   const auto check = [&](const volume::ImageView& shown) {
     auto comparison = stages.verifier.verify(
         {run, request, image.uncut_window.value_or(request.window), image.eye_inside, volume.frames}, shown,
@@ -201,7 +206,7 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
   // An image that replaces pixels is drawn with the box, which writes its depth itself.
   if (!image.replaces_pixels) {
     if (const auto watched = stages.depth.settle(run, image.uncut_window.value_or(request.window),
-                                                 volume.frames == 0, volume.depth_looked_at)) {
+                                                 volume.frames == 0, depth_is_read(volume))) {
       depth_looked_at(deferred_depth.add(*watched));
       chain().set_phase(Phase::depth_deferred);
     }
@@ -212,6 +217,11 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
   ++volume.frames;
   stages.merged.note_brick(run.pipeline(), recognised.seen, request, volume.sent.texture);
   count_substituted(volume, counts, stages.account);
+}
+
+bool VolumeUnit::depth_is_read(const KnownVolume& volume) {
+  if (volume.depth_looked_at) return true;
+  return !defers_window_depth_ && state_value(*context().gl, GL_DRAW_FRAMEBUFFER_BINDING) == 0;
 }
 
 void VolumeUnit::try_rounding(const Pipeline& pipeline, const ImageRequest& image, KnownVolume& volume,
@@ -253,12 +263,8 @@ void VolumeUnit::frame_ended(FrameEnd kind) {
   // Another context may sample a depth texture that is attached here.
   if (kind == FrameEnd::make_current) depth_looked_at(deferred_depth.take_textures(std::nullopt));
   if (kind != FrameEnd::swap && kind != FrameEnd::finish) return;
-  // After a swap the window's depth is undefined. OSMesa has no swap, and keeps the depth in memory that the
-  // application may read without a call.
-  if (kind != FrameEnd::swap)
-    depth_looked_at(deferred_depth.take(0, 0));
-  else if (!deferred_depth.take_cleared(0, std::nullopt).empty())
-    depth_gone();
+  // After a swap the window's depth is undefined.
+  if (kind == FrameEnd::swap && !deferred_depth.take_cleared(0, std::nullopt).empty()) depth_gone();
   FrameRecord frame = session_->ledger().close(this);
   frame.time_ms = std::chrono::duration<double, std::milli>(Clock::now() - frame_started_).count();
   report_frame(frame, session_->options().explain);

@@ -37,6 +37,10 @@ class VolumeUnit final : public DrawObserver {
   void frame_ended(FrameEnd kind) override;
   void abandon() override;
 
+  /// Every run writes the depth of framebuffer 0 at once: the application may read it in memory, without a call
+  /// (OSMesa).
+  void never_defer_window_depth() { defers_window_depth_ = false; }
+
   void settle_held() override;
   void depth_looked_at(const std::vector<GLuint>& volumes) override;
   void depth_gone() override;
@@ -63,11 +67,14 @@ class VolumeUnit final : public DrawObserver {
   /// is wrong, too. The application's own image is still there, so that no further frame has to be drawn twice.
   void try_rounding(const Pipeline& pipeline, const ImageRequest& image, KnownVolume& volume,
                     compositor::RenderService& service);
+  /// Returns whether something reads the depth that a run of the volume would write in the bound framebuffer.
+  bool depth_is_read(const KnownVolume& volume);
   void forget_deleted_volumes();
 
   std::shared_ptr<RenderSession> session_;
   KnownVolumes volumes_;
   std::unique_ptr<Stages> stages_;
+  bool defers_window_depth_ = true;
   std::uint64_t tidied_in_frame_ = 0;
   std::chrono::steady_clock::time_point frame_started_;
 };

@@ -123,6 +123,22 @@ TEST_F(OverTcp, NodesDrawWhatTheyDrawAtAUnixSocket) {
   end_server();
 }
 
+TEST_F(OverTcp, VolumesOfNodesAreVerifiedThoughMovingViewsTravelAsJpeg) {
+  serve();
+  constexpr int frames = 12;
+  const auto bytes_down = [&](const Words& options) {
+    const Outcome outcome = run_well(under(over_tcp() + Words{"--report", file("report.json")} + options) +
+                                     turning("turned.png", frames));
+    EXPECT_EQ(substituted(json("report.json")), frames) << outcome.err;
+    return json("report.json").at("connection").at("down").at("payload_bytes").get<int>();
+  };
+  const int exact = bytes_down({});
+  const int lossy = bytes_down({"--quality", "30"});
+  fmt::print("bytes down: {} without loss, {} with JPEG\n", exact, lossy);
+  EXPECT_LT(lossy, exact);
+  end_server();
+}
+
 TEST_F(OverTcp, WhoHasAnotherSecretDrawsByItselfAndSaysWhy) {
   serve();
   std::ofstream(file("wrong")) << "what somebody made up";

@@ -42,6 +42,22 @@ inline volume::RenderRequest request_on_steps(const Texture& texture) {
   return request;
 }
 
+/// For error bounds: a ghost layer that is wide enough for samples one texel apart.
+inline Texture texture_for_bounds() {
+  Texture texture = some_texture();
+  texture.description.ghost_layer = 8;
+  return texture;
+}
+
+/// The image of which holds error bounds.
+inline volume::RenderRequest request_for_bounds(const Texture& texture) {
+  volume::RenderRequest request = request_on_steps(texture);
+  request.steps->first = 0.5;
+  request.steps->cover_whole_ray = true;
+  request.bound_of = {std::get<volume::TransferFunction>(request.classification), 1};
+  return request;
+}
+
 /// Uploads slice ranges of three slices.
 inline void upload(RenderService& service, const Texture& texture) {
   const volume::VolumeDescription& d = texture.description;

@@ -86,6 +86,7 @@ RenderRequest some_request(bool colours, bool depth) {
   r.opacity_limit = 0.95F;
   r.termination = 1e-5F;
   r.may_travel_as_halves = depth;
+  r.exact = !colours;
   r.optimizations = {true, !colours, depth};
   if (depth) r.depth = DepthImage{{2, 7, 3, 1}, {0.5F, 0.25F, 1.0F}, true};
   return r;
@@ -138,7 +139,7 @@ std::vector<MessageKind> all_message_kinds() {
       {"pre-integration table", encode(KeptPreIntegrationTable{kept_place, some_kept_tables()[kept_place]}),
        [](auto b) { return encode(decode_pre_integration_table(b)); }},
       {"request with a map and depth", encode(some_request(true, true)), request},
-      {"rendered", encode(RenderedReply{{1, 2, 3, 4}, some_counts()}),
+      {"rendered", encode(RenderedReply{{1, 2, 3, 4}, some_counts(), true}),
        [](auto b) { return encode(decode_rendered(b)); }},
       {"integrals",
        encode(some_request(false, false), std::array{volume::Pixel{3, -4}, volume::Pixel{70000, 5}}, 12.5),

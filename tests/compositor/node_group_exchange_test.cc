@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compositor/exchange/schedule.h"
 #include "compositor/exchange/settings.h"
@@ -143,6 +144,36 @@ TEST_F(NodeGroupTest, PartsMayTravelAsHalves) {
   const double off = largest_difference(whole_image(halves, request), image);
   EXPECT_GT(off, 0);
   EXPECT_LE(off, 3.0 / 2048) << "three parts, each rounded";
+}
+
+TEST_F(NodeGroupTest, ExactImagesAndBoundsTravelAsFloatsWhateverTheNodesWereTold) {
+  const Texture texture = texture_for_bounds();
+  const volume::RenderRequest bounds = request_for_bounds(texture);
+  volume::RenderRequest any = bounds;
+  any.bound_of.reset();
+  const volume::RenderRequest exact = volume::exactly(any);
+  const auto images_in = [&](Layout layout) {
+    ExchangeSettings settings = one_exchange;
+    settings.layout = layout;
+    const Group& group = start(3, limits::stall_patience, {}, settings);
+    const auto linked = connect();
+    upload(*linked, texture);
+    std::vector<std::vector<float>> images;
+    for (const volume::RenderRequest& request : {any, exact, bounds})
+      images.push_back(image_of(*linked, request).rgba);
+    launcher_->ask([](Broker& b) { b.dismiss_node_group(); });
+    EXPECT_TRUE(eventually([&] { return group.ended(); }));
+    return images;
+  };
+  const auto floats = images_in(Layout::rgba32f);
+  EXPECT_EQ(floats[1], floats[0]);
+  EXPECT_NE(floats[2], floats[0]);
+  for (const Layout layout : {Layout::rgba16f, Layout::rgba8}) {
+    const auto images = images_in(layout);
+    EXPECT_NE(images[0], floats[0]) << "it was rounded";
+    EXPECT_EQ(images[1], floats[1]);
+    EXPECT_EQ(images[2], floats[2]);
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "compositor/service/client_limits.h"
 #include "compositor/service/rank_renderer.h"
 #include "compositor/sort/cost_image.h"
 #include "tests/all_cases.h"
@@ -62,6 +63,21 @@ TEST(EstimatedCosts, AreWhatPartsOfAnImageTake) {
     worst = std::max(worst, std::abs(estimated - taken) / whole);
   std::printf("estimates are at most %.1f %% of the dearest part off\n", 100 * worst);
   EXPECT_LE(worst, 0.05);
+}
+
+TEST(RankRenderer, CountsVolumesOfOthersThatHaveTheSameId) {
+  const volume::VolumeDescription description = some_texture().description;
+  const auto bytes = std::uint64_t(volume::testing::stored_texels(description));
+  // Two machines, each with room for one copy and a half.
+  RankRenderer renderer(0, {0, 1}, volume::cpu_renderer, client_limits(1, {}),
+                        {Sort::automatic, bytes + bytes / 2, 0});
+  const auto machines_of_a_copy = [&](std::uint64_t client) {
+    renderer.begin(client, description);
+    return renderer.arrangement({client, description.id}).members();
+  };
+  EXPECT_EQ(machines_of_a_copy(1), 1);
+  EXPECT_EQ(machines_of_a_copy(1), 1) << "it replaces its former self";
+  EXPECT_EQ(machines_of_a_copy(2), 2) << "two copies do not fit";
 }
 
 TEST_F(NodeGroupSort, ShowsTheImagesOfOneProcess) {

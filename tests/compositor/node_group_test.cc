@@ -7,6 +7,7 @@
 #include <sys/mman.h>
 #include <sys/socket.h>
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -14,8 +15,12 @@
 #include <limits>
 #include <memory>
 #include <random>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "compositor/exchange/thread_communicator.h"
+#include "compositor/node/clients.h"
 #include "compositor/node/node.h"
 #include "compositor/service/image_buffer.h"
 #include "compositor/service/rank_renderer.h"
@@ -734,6 +739,29 @@ TEST_F(NodeGroupTest, AnswersThatCannotBeTrueEndTheConnection) {
     EXPECT_THROW(linked->render(request), ServiceLost);
     EXPECT_THROW(linked->render(request), ServiceLost);
   }
+}
+
+TEST(Clients, AreServedOnIfOneTooManyHasGoneAlready) {
+  const ScratchFolder folder;
+  const std::string path = folder / "control";
+  const FileDescriptor listening = listen_at(path);
+  Clients clients(path, 1, limits::stall_patience);
+  Connection launcher(
+      FileDescriptor(::accept4(listening.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)),
+      service_protocols);
+  std::vector<FileDescriptor> applications;
+  for (std::size_t i = 0; i <= limits::max_clients; ++i) {
+    std::array<int, 2> ends{};
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()), 0);
+    const FileDescriptor passed_on(ends[1]);
+    FileDescriptor application(ends[0]);
+    if (i < limits::max_clients) applications.push_back(std::move(application));
+    application = {};  // the last one has gone
+    launcher.send(LauncherMessage::client, 0, Bytes{}, soon(), passed_on.get());
+  }
+  Connection first(std::move(applications.front()), service_protocols);
+  first.send(NodeMessage::forget_volume, 1, encode_id(7), soon());
+  EXPECT_TRUE(std::holds_alternative<Clients::Request>(clients.next()));
 }
 
 TEST(NodeGroup, ALauncherThatIsNotThereEndsAllRanks) {

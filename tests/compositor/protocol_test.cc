@@ -81,8 +81,23 @@ TEST(Protocol, EveryFieldOfARequestArrives) {
   EXPECT_EQ(got.depth->rect, sent.depth->rect);
   EXPECT_EQ(got.depth->depth, sent.depth->depth);
   EXPECT_EQ(got.depth->or_equal, sent.depth->or_equal);
+  EXPECT_EQ(got.exact, sent.exact);
   EXPECT_EQ(decode_request(encode(some_request(true, false))).classification,
             some_request(true, false).classification);
+}
+
+TEST(Protocol, SaysWhichImagesMustBeExact) {
+  RenderRequest request = some_request_for_slice_segments();
+  // Without the table, as in a relay.
+  EXPECT_FALSE(asks_for_exact_image(encode(request, 1)));
+  request.exact = true;
+  EXPECT_TRUE(asks_for_exact_image(encode(request, 1)));
+  request = some_request(true, false);
+  EXPECT_FALSE(asks_for_exact_image(encode(request)));
+  request.bound_of = MediumFunction{{0, 1, {{}, {1, 1, 1, 1}}}, 1};
+  EXPECT_TRUE(asks_for_exact_image(encode(request)));
+  EXPECT_TRUE(must_be_exact(decode_request(encode(request))));
+  EXPECT_THROW(asks_for_exact_image({}), MalformedMessage);
 }
 
 TEST(Protocol, SliceRangesArrive) {

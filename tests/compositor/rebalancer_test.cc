@@ -257,6 +257,36 @@ TEST(Rebalancer, AllRanksCutAlikeAndBlocksComeBackFromCaches) {
   EXPECT_GT(figures.from_cache, 0U);
 }
 
+TEST(Rebalancer, SaysByHowMuchTimesDeviatedInTheImageBefore) {
+  constexpr int images = 10;
+  const auto moves_with = [](Balance balance, volume::PartitionMethod method) {
+    std::vector<MoveFigures> moves;  // on rank 0
+    run_ranks(2, [&](Communicator& communicator) {
+      const Texture texture = scene();
+      BalanceSettings settings;
+      settings.balance = balance;
+      settings.moved = [&](const MoveFigures& move) {
+        if (communicator.rank() == 0) moves.push_back(move);
+      };
+      Rank rank(communicator, settings, method);
+      rank.upload(texture);
+      for (int drawn = 0; drawn < images; ++drawn)
+        rank.image(request_of(texture, 0), communicator.rank() == 0 ? 4 : 1);
+    });
+    return moves;
+  };
+  for (const Balance balance : {Balance::muller, Balance::predicted}) {
+    const auto moves = moves_with(balance, volume::PartitionMethod::blocks);
+    ASSERT_FALSE(moves.empty());
+    // One rank takes four times as long as the other for about as many samples: 3 / 2.5.
+    EXPECT_NEAR(moves.front().deviation.value_or(0), 1.2, 0.3);
+    for (const MoveFigures& move : moves) EXPECT_GT(move.deviation.value_or(0), 0);
+  }
+  const auto cuts = moves_with(Balance::off, volume::PartitionMethod::cost);
+  ASSERT_FALSE(cuts.empty());
+  EXPECT_FALSE(cuts.front().deviation) << "cut before the first image, when nothing was measured";
+}
+
 TEST(Rebalancer, ARefusedRequestMovesNothingAndLeavesTheGroupAlive) {
   Figures figures;
   run_ranks(3, [&](Communicator& communicator) {

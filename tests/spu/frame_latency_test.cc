@@ -2,6 +2,7 @@
 #include "spu/volume/session/frame_latency.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <atomic>
 #include <future>
@@ -28,12 +29,15 @@ class Cameras final : public compositor::RenderService {
   compositor::Rendered render(const volume::RenderRequest& request) override {
     if (wait_for.valid()) wait_for.wait();
     if (is_lost) throw compositor::ServiceLost("the nodes are gone");
+    sigset_t blocked;
+    pthread_sigmask(SIG_BLOCK, nullptr, &blocked);
+    blocks_signals = sigismember(&blocked, SIGUSR1) != 0;
     ++images;
     image_ = volume::Image({0, 0, 1, 1});
     image_.rgba = {float(request.texture_to_clip[3]), float(request.version), 0, 0};
     volume::FrameCounts counts;
     counts.rays = 1;
-    return {image_.view(), counts};
+    return {image_.view(), counts, false, is_lossy && !request.exact};
   }
   std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest&, std::span<const volume::Pixel>,
                                                double) override {
@@ -43,7 +47,9 @@ class Cameras final : public compositor::RenderService {
 
   std::shared_future<void> wait_for;
   std::atomic<bool> is_lost = false;
+  std::atomic<bool> is_lossy = false;  ///< images are sent as JPEG unless they must be exact
   std::atomic<int> images = 0;
+  std::atomic<bool> blocks_signals = false;  ///< the thread of the last image
 
  private:
   volume::Image image_;
@@ -96,6 +102,26 @@ TEST_F(FrameLatencyTest, IsBehindWhileTheCameraMovesAndRightWhenItRests) {
   EXPECT_EQ(seen_from(9), 6) << "and it moves on";
 }
 
+TEST_F(FrameLatencyTest, AsksAgainForALossyImageWhenTheCameraRests) {
+  cameras_->is_lossy = true;
+  service_->allow(true);
+  seen_from(1);
+  EXPECT_EQ(seen_from(2), 1);
+  volume::RenderRequest request;
+  request.version = version_;
+  request.texture_to_clip[3] = 2;
+  for (int frame = 0; frame < 3; ++frame) {
+    const compositor::Rendered rendered = service_->render(request);
+    EXPECT_EQ(rendered.image.rgba[0], 2);
+    EXPECT_FALSE(rendered.lossy);
+    EXPECT_FALSE(service_->is_behind());
+  }
+  EXPECT_EQ(cameras_->images, 3) << "of camera 2 a lossy one and an exact one";
+  request.exact = true;
+  service_->render(request);
+  EXPECT_EQ(cameras_->images, 3);
+}
+
 TEST_F(FrameLatencyTest, DoesNotWaitForTheNodesBetweenFrames) {
   service_->allow(true);
   seen_from(1);
@@ -131,6 +157,15 @@ TEST_F(FrameLatencyTest, KeepsSeveralVolumesApart) {
       request.texture_to_clip[3] = double(10 * frame) + double(id);
       EXPECT_EQ(service_->render(request).image.rgba[0], float(10 * std::max(0, frame - 1)) + float(id));
     }
+}
+
+TEST_F(FrameLatencyTest, CastsOnThreadsThatLeaveTheViewersSignalsAlone) {
+  service_->allow(true);
+  seen_from(1);
+  EXPECT_FALSE(cameras_->blocks_signals) << "the viewer's own thread";
+  seen_from(2);
+  seen_from(3);
+  EXPECT_TRUE(cameras_->blocks_signals);
 }
 
 TEST_F(FrameLatencyTest, TellsOfLostNodesWithTheNextImage) {

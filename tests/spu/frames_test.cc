@@ -135,6 +135,64 @@ TEST(LastImage, AnswersARequestThatCameBefore) {
                                             "others were asked for since", "texels changed"}));
 }
 
+/// Sends images as JPEG unless they must be exact; an image shows whether it is.
+class LossyService final : public compositor::RenderService {
+ public:
+  explicit LossyService(int& images) : images_(images) {}
+  void begin_volume(const volume::VolumeDescription&) override {}
+  void begin_change(volume::VolumeId, std::uint64_t) override {}
+  void add_texels(volume::VolumeId, std::span<const volume::TexelBox>, std::span<const std::byte>) override {}
+  void end_volume(volume::VolumeId) override {}
+  void forget_volume(volume::VolumeId) override {}
+  compositor::Rendered render(const volume::RenderRequest& request) override {
+    ++images_;
+    image_ = volume::Image({0, 0, 1, 1});
+    image_.rgba[0] = request.exact ? 1.0F : 0.5F;
+    return {image_.view(), {}, false, !request.exact};
+  }
+  std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest&, std::span<const volume::Pixel>,
+                                               double) override {
+    return {};
+  }
+  int nodes() const override { return 1; }
+
+ private:
+  int& images_;
+  volume::Image image_;
+};
+
+TEST(LastImage, OfAViewAtRestIsExact) {
+  int images = 0;
+  const auto service = with_last_image(std::make_unique<LossyService>(images), true, [](std::string_view) {});
+  volume::RenderRequest request;
+  EXPECT_TRUE(service->render(request).lossy);
+  for (int frame = 0; frame < 3; ++frame) {
+    const compositor::Rendered rendered = service->render(request);
+    EXPECT_FALSE(rendered.lossy);
+    EXPECT_EQ(rendered.image.rgba[0], 1.0F);
+    EXPECT_EQ(rendered.repeated, frame > 0);
+  }
+  EXPECT_EQ(images, 2);
+  request.exact = true;
+  EXPECT_TRUE(service->render(request).repeated) << "the image that is there is exact";
+  request.texture_to_clip[3] = 0.25;
+  EXPECT_FALSE(service->render(request).lossy);
+  request.exact = false;
+  EXPECT_TRUE(service->render(request).repeated) << "likewise";
+  EXPECT_EQ(images, 3);
+}
+
+TEST(LastImage, OfSeveralViewsAtRestAreExact) {
+  int images = 0;
+  const auto service = with_last_image(std::make_unique<LossyService>(images), true, [](std::string_view) {});
+  std::array<volume::RenderRequest, 2> requests;
+  requests[1].volume = 1;
+  for (int frame = 0; frame < 4; ++frame)
+    for (const volume::RenderRequest& request : requests)
+      EXPECT_EQ(service->render(request).image.rgba[0], frame == 0 ? 0.5F : 1.0F);
+  EXPECT_EQ(images, 4);
+}
+
 TEST(LastImage, OfSeveralInTurnIsKept) {
   int images = 0;
   const auto service =

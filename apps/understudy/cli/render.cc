@@ -50,6 +50,17 @@ struct RenderArguments {
   ProgressOptions progress;
 };
 
+/// A bound holds for the image that is computed, and is itself an image: neither may be rounded on its way.
+void refuse_rounded_bounds(const RenderArguments& arguments) {
+  if (!arguments.scene.error_bound) return;
+  if (arguments.nodes.choices.pixels != "float")
+    throw std::invalid_argument(fmt::format(
+        "--error-bound does not include the rounding of --pixels {}; give --pixels float, the default",
+        arguments.nodes.choices.pixels));
+  if (arguments.nodes.connection.connection_request.jpeg_quality > 0)
+    throw std::invalid_argument("--error-bound does not include what JPEG images lose; leave out --quality");
+}
+
 double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
@@ -129,8 +140,9 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
   const volume::RenderRequest bounding = request_of(scene, scene.image, texel_figures(figures.ranks));
   figures.request = bounding;
   figures.request.bound_of.reset();
-  const volume::RenderRequest own = figures.request;
   const spu::BudgetAsked asked = budget_asked(arguments.budget, arguments.nodes.choices.pixels == "float");
+  figures.request.exact = bounding.bound_of || asked.error > 0;  // nodes that run already may round others
+  const volume::RenderRequest own = figures.request;
   const bool in_parts = passes.parts.ranks > 1;
   if (in_parts && asked.ms > 0 && asked.error == 0)
     throw std::invalid_argument(
@@ -155,6 +167,7 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
 }
 
 int render(RenderArguments arguments) {
+  refuse_rounded_bounds(arguments);
   arguments.scene.samples_are_free =
       budget_asked(arguments.budget, arguments.nodes.choices.pixels == "float").any();
   const FileScene scene = scene_of(arguments.scene);

@@ -119,7 +119,10 @@ FileDescriptor connect_to(const TcpAddress& address, Deadline deadline) {
   for (const addrinfo* to = list.get(); to != nullptr; to = to->ai_next) ++left;
   for (const addrinfo* to = list.get(); to != nullptr; to = to->ai_next, --left) {
     FileDescriptor result(::socket(to->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-    if (!result) throw std::runtime_error(fmt::format("cannot make a socket: {}", std::strerror(errno)));
+    if (!result) {
+      error = errno;  // this kernel may lack the address's family, and not that of the next address
+      continue;
+    }
     // An address whose packets vanish must leave time for the addresses after it.
     const Deadline now = Clock::now();
     error = try_to_connect(result.get(), *to, now + (deadline - now) / left);

@@ -638,6 +638,7 @@ March RayCasterStage::choose_march(Draw& draw, compositor::RenderService& servic
     composed.window = intersection(composed.window, looked_at->rect);
     if (draw.kept) composed.window = intersection(composed.window, *draw.kept);
     ImageRequest image = ask(draw, march, *box, std::move(composed));
+    image.request.exact = true;  // it is compared
     const compositor::Rendered rendered = service.render(image.request);
     volume::Image shown = copy_of(rendered.image);
     volume::FrameCounts counts;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "compositor/rendered.h"
+#include "compositor/service/blocked_signals.h"
 
 namespace understudy::spu {
 namespace {
@@ -15,7 +16,8 @@ using volume::RenderRequest;
 
 constexpr std::size_t most_views = 4;
 
-/// Also by what moves with the camera: where samples lie, and the opaque geometry in front.
+/// Also by what moves with the camera: where samples lie, the opaque geometry in front, and whether the image
+/// is compared.
 bool differ_by_the_camera_alone(const RenderRequest& a, const RenderRequest& b) {
   RenderRequest as_b = a;
   as_b.texture_to_clip = b.texture_to_clip;
@@ -26,6 +28,7 @@ bool differ_by_the_camera_alone(const RenderRequest& a, const RenderRequest& b) 
   as_b.fog = b.fog;
   as_b.light = b.light;
   as_b.depth = b.depth;
+  as_b.exact = b.exact;
   return a.steps.has_value() == b.steps.has_value() && a.depth.has_value() == b.depth.has_value() && as_b == b;
 }
 
@@ -101,21 +104,24 @@ compositor::Rendered FrameLatency::render(const RenderRequest& request) {
   behind_ = false;
   finish();
   View* const view = view_like(request);
-  if (view != nullptr && view->request == request) {
+  if (view != nullptr) view->request.exact = request.exact;  // what was not lossy answers both
+  const bool same = view != nullptr && view->request == request;
+  if (same && !view->lossy) {
     const bool repeated = std::exchange(view->told, true);
     return {view->image.view(), repeated ? volume::FrameCounts() : view->counts, repeated};
   }
-  if (!allowed_ || view == nullptr) {
-    compositor::Rendered rendered = service_->render(request);
-    if (allowed_) keep({request, copy_of(rendered.image), rendered.counts, true});
+  if (!allowed_ || view == nullptr || same) {
+    compositor::Rendered rendered = service_->render(same ? volume::exactly(request) : request);
+    if (allowed_) keep({request, copy_of(rendered.image), rendered.counts, true, rendered.lossy});
     return rendered;
   }
   const volume::FrameCounts counts = view->told ? volume::FrameCounts() : view->counts;
   shown_ = std::move(view->image);
   views_.erase(views_.begin() + (view - views_.data()));
+  const compositor::BlockedSignals blocked;
   cast_ = std::async(std::launch::async, [this, request] {
     const compositor::Rendered rendered = service_->render(request);
-    return View{request, copy_of(rendered.image), rendered.counts, false};
+    return View{request, copy_of(rendered.image), rendered.counts, false, rendered.lossy};
   });
   behind_ = true;
   return {shown_.view(), counts, false};

@@ -2,7 +2,7 @@
 // A render service in front of another one that lets the nodes work while the application does
 // (`--frame-latency 1`). While the camera moves, a request is answered with the image of the previous one, and
 // its own image is cast until the next request comes. A repeated request is answered with its own image, so
-// that a camera at rest never shows a late one.
+// that a camera at rest never shows a late one, nor a lossy one.
 #pragma once
 
 #include <sys/types.h>
@@ -46,7 +46,8 @@ class FrameLatency final : public compositor::RenderService {
     volume::RenderRequest request;
     volume::Image image;
     volume::FrameCounts counts;
-    bool told = false;  ///< the counts have been returned
+    bool told = false;   ///< the counts have been returned
+    bool lossy = false;  ///< not to be shown again
   };
 
   void finish();

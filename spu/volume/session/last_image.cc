@@ -59,18 +59,22 @@ class LastImage final : public compositor::RenderService {
   }
 
   compositor::Rendered render(const RenderRequest& request) override {
-    const auto same =
-        std::find_if(answers_.begin(), answers_.end(), [&](const Answer& a) { return a.request == request; });
+    const auto same = std::find_if(answers_.begin(), answers_.end(), [&](Answer& answer) {
+      answer.request.exact = request.exact;  // what was not lossy answers both
+      return answer.request == request;
+    });
     const bool known = same != answers_.end();
-    if (known && same->there && keeps_ && getpid() == process_) {
+    const bool lossy = known && same->lossy;
+    if (known && same->there && !lossy && keeps_ && getpid() == process_) {
       news_("");
       return {same->shown, {}, true};
     }
     const std::string_view why = !keeps_ ? "asked to"
+                                 : lossy ? "it was sent as JPEG before"
                                  : known ? "others were asked for since"
                                          : reason_for(request);
     for (Answer& answer : answers_) answer.there = answer.there && !answer.kept.rgba.empty();
-    compositor::Rendered rendered = service_->render(request);
+    compositor::Rendered rendered = service_->render(lossy ? volume::exactly(request) : request);
     news_(why);
     Answer& answer = known ? *same : place_for_another();
     if (!known) answer.request = request;
@@ -78,6 +82,7 @@ class LastImage final : public compositor::RenderService {
     answer.kept = known && keeps_ ? copy_of(rendered.image) : volume::Image();
     answer.shown = known && keeps_ ? answer.kept.view() : rendered.image;
     answer.there = true;
+    answer.lossy = rendered.lossy;
     answer.asked = ++asked_;
     rendered.image = answer.shown;
     return rendered;
@@ -96,6 +101,7 @@ class LastImage final : public compositor::RenderService {
     volume::ImageView shown;
     volume::Image kept;  ///< the image shown, if it is a copy
     bool there = false;
+    bool lossy = false;
     std::uint64_t asked = 0;  ///< number of the request
   };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A render service in front of another one that answers a repeated request with the image that is still there.
-// Some viewers draw everything twice per frame; all of them draw frames in which nothing has moved.
+// Some viewers draw everything twice per frame; all of them draw frames in which nothing has moved. An image
+// that was lossy, because its view moved, is requested again without loss instead.
 #pragma once
 
 #include <functional>

@@ -180,6 +180,9 @@ TEST_F(Render, WhatIsWrongIsSaidWithTheNextStep) {
   EXPECT_THAT(trouble(file + " --step 0"), HasSubstr("positive"));
   EXPECT_THAT(trouble(file + " --texels u8"), HasSubstr("--range"));
   EXPECT_THAT(trouble("synthetic:8x8"), HasSubstr("synthetic:512x512x512:u8:shells"));
+  EXPECT_THAT(trouble(file + " --error-bound --pixels half"), HasSubstr("give --pixels float"));
+  EXPECT_THAT(trouble(file + " --error-bound --pixels byte"), HasSubstr("give --pixels float"));
+  EXPECT_THAT(trouble(file + " --error-bound --quality 90"), HasSubstr("leave out --quality"));
 }
 
 #ifdef UNDERSTUDY_HAS_NODES

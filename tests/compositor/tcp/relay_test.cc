@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "compositor/relay/packing_choice.h"
 #include "compositor/relay/render_relay.h"
 #include "compositor/service/service_protocols.h"
 #include "compositor/transport/tcp/listener.h"
@@ -152,6 +153,62 @@ TEST_F(RelayTest, NarrowerImagesHaveTheErrorThatWasAskedFor) {
     service_.reset();
     application_.clear();
   }
+}
+
+TEST_F(RelayTest, ExactImagesAndBoundsLoseNothing) {
+  start(2);
+  const Texture texture = texture_for_bounds();
+  const volume::RenderRequest bounds = request_for_bounds(texture);
+  volume::RenderRequest any = bounds;
+  any.bound_of.reset();
+  const volume::RenderRequest exact = volume::exactly(any);
+  const auto here = connect();
+  upload(*here, texture);
+  const volume::Image expected = image_of(*here, exact), expected_bounds = image_of(*here, bounds);
+  for (const ConnectionRequest& connection_request :
+       {ConnectionRequest{Destination::nodes, Layout::rgba16f},
+        ConnectionRequest{Destination::nodes, Layout::rgba8},
+        ConnectionRequest{Destination::nodes, Layout::rgba32f, 40},
+        ConnectionRequest{Destination::nodes, Layout::rgba8, 40}}) {
+    RenderService& there = connect_over(listener_.address(), connection_request);
+    upload(there, texture);
+    EXPECT_EQ(image_of(there, exact).rgba, expected.rgba);
+    EXPECT_EQ(image_of(there, bounds).rgba, expected_bounds.rgba);
+    EXPECT_FALSE(there.render(exact).lossy);
+    EXPECT_EQ(there.render(any).lossy, connection_request.jpeg_quality > 0);
+    EXPECT_FALSE(there.render(any).lossy) << "the view rests";
+    service_.reset();
+    application_.clear();
+  }
+}
+
+TEST_F(RelayTest, SeveralViewsThatRestLoseNothing) {
+  start(2);
+  const Texture texture = some_texture();
+  RenderService& there = connect_over(listener_.address(), {Destination::nodes, Layout::rgba32f, 40});
+  upload(there, texture);
+  std::array<volume::RenderRequest, 4> requests;
+  for (std::size_t i = 0; i < requests.size(); ++i)
+    requests[i] =
+        volume::testing::request_for(texture, volume::testing::usual_camera(160, 120), 160, 120, 50 + int(i));
+  for (const volume::RenderRequest& request : requests) EXPECT_TRUE(there.render(request).lossy);
+  for (const volume::RenderRequest& request : requests) EXPECT_FALSE(there.render(request).lossy);
+}
+
+TEST(PackingChoice, TriesAgainAfterPackingSeemedNotToPay) {
+  constexpr double line = 100e6;
+  PackingChoice packing;
+  EXPECT_FALSE(packing.pays(0)) << "the speed is not known yet";
+  EXPECT_TRUE(packing.pays(line));
+  packing.packed(1e-3, 10'000, 5'000);  // while the machine was busy
+  for (int turn = 0; turn < 2; ++turn) {
+    int unpacked = 0;
+    while (unpacked < 1000 && !packing.pays(line)) ++unpacked;
+    EXPECT_EQ(unpacked, 200);
+  }
+  for (int i = 0; i < 20; ++i) packing.packed(5e-6, 10'000, 5'000);
+  EXPECT_TRUE(packing.pays(line)) << "packing is fast again";
+  EXPECT_TRUE(packing.pays(line));
 }
 
 TEST_F(RelayTest, ALineThatIsCutForAWhileGoesOnWhereItWas) {

@@ -2,12 +2,15 @@
 // Connections whose other end is busy, and connections whose other end has gone.
 #include "compositor/transport/tcp/tcp_connection.h"
 
+#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netdb.h>
 #include <poll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 #include <random>
 #include <thread>
@@ -15,6 +18,27 @@
 
 #include "compositor/service/service_protocols.h"
 #include "tests/compositor/tcp/session.h"
+
+namespace {
+
+/// Whether hosts also have an address of a family that no kernel knows, before all others.
+bool has_address_of_no_family = false;
+
+}  // namespace
+
+/// In place of the C library's.
+extern "C" int getaddrinfo(const char* host, const char* service, const addrinfo* wanted, addrinfo** found) {
+  static const auto real = reinterpret_cast<decltype(&::getaddrinfo)>(::dlsym(RTLD_NEXT, "getaddrinfo"));
+  const int error = real(host, service, wanted, found);
+  if (error != 0 || !has_address_of_no_family) return error;
+  auto* const first = static_cast<addrinfo*>(std::malloc(sizeof(addrinfo)));  // freeaddrinfo() calls free()
+  *first = **found;
+  first->ai_family = AF_MAX;
+  first->ai_canonname = nullptr;
+  first->ai_next = *found;
+  *found = first;
+  return 0;
+}
 
 namespace understudy::compositor::testing {
 namespace {
@@ -92,6 +116,13 @@ TEST_F(TcpConnectionTest, WhoOnlySaysThatHeIsThereSendsNoMessage) {
   });
   EXPECT_EQ(near_->receive().sequence, 5U);
   EXPECT_EQ(near_->received().messages, 1U);
+}
+
+TEST(TcpSocket, TriesTheNextAddressWhereThereIsNoSocketForOne) {
+  const FileDescriptor listening = listen_at(TcpAddress{"127.0.0.1", 0});
+  has_address_of_no_family = true;
+  EXPECT_NO_THROW(connect_to(own_address(listening.get()), Clock::now() + std::chrono::seconds(10)));
+  has_address_of_no_family = false;
 }
 
 /// An attacker between two connections.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The EGL functions that create, destroy or switch contexts, end a frame, or return addresses. The others are
-// generated.
+// The EGL functions that create, destroy or switch contexts, end or publish a frame, or return addresses. The
+// others are generated.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
@@ -114,6 +114,27 @@ UNDERSTUDY_ENTRY EGLBoolean eglSwapBuffersWithDamageEXT(EGLDisplay display, EGLS
   return end_frame(FrameEnd::swap, [&] { return real(display, surface, rects, count); });
 }
 
+UNDERSTUDY_ENTRY EGLBoolean eglPostSubBufferNV(EGLDisplay display, EGLSurface surface, EGLint x, EGLint y,
+                                               EGLint width, EGLint height) {
+  static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLSurface, EGLint, EGLint, EGLint, EGLint)> real{
+      egl, "eglPostSubBufferNV"};
+  return end_frame(FrameEnd::swap, [&] { return real(display, surface, x, y, width, height); });
+}
+
+UNDERSTUDY_ENTRY EGLBoolean eglSwapBuffersRegionNOK(EGLDisplay display, EGLSurface surface, EGLint count,
+                                                    const EGLint* rects) {
+  static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLSurface, EGLint, const EGLint*)> real{
+      egl, "eglSwapBuffersRegionNOK"};
+  return end_frame(FrameEnd::swap, [&] { return real(display, surface, count, rects); });
+}
+
+UNDERSTUDY_ENTRY EGLBoolean eglSwapBuffersRegion2NOK(EGLDisplay display, EGLSurface surface, EGLint count,
+                                                     const EGLint* rects) {
+  static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLSurface, EGLint, const EGLint*)> real{
+      egl, "eglSwapBuffersRegion2NOK"};
+  return end_frame(FrameEnd::swap, [&] { return real(display, surface, count, rects); });
+}
+
 UNDERSTUDY_ENTRY EGLBoolean eglCopyBuffers(EGLDisplay display, EGLSurface surface, EGLNativePixmapType target) {
   static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLSurface, EGLNativePixmapType)> real{
       egl, "eglCopyBuffers"};
@@ -128,6 +149,66 @@ UNDERSTUDY_ENTRY EGLBoolean eglWaitClient() {
 UNDERSTUDY_ENTRY EGLBoolean eglWaitGL() {
   static constinit RealFunction<EGLBoolean (*)()> real{egl, "eglWaitGL"};
   return end_frame(FrameEnd::wait, [&] { return real(); });
+}
+
+// Whoever waits for a fence, or has an image of a texture or renderbuffer, sees what was drawn before: another
+// context, thread or process.
+
+UNDERSTUDY_ENTRY EGLSync eglCreateSync(EGLDisplay display, EGLenum type, const EGLAttrib* attributes) {
+  static constinit RealFunction<EGLSync (*)(EGLDisplay, EGLenum, const EGLAttrib*)> real{egl, "eglCreateSync"};
+  return end_frame(FrameEnd::wait, [&] { return real(display, type, attributes); });
+}
+
+UNDERSTUDY_ENTRY EGLSyncKHR eglCreateSyncKHR(EGLDisplay display, EGLenum type, const EGLint* attributes) {
+  static constinit RealFunction<EGLSyncKHR (*)(EGLDisplay, EGLenum, const EGLint*)> real{egl,
+                                                                                         "eglCreateSyncKHR"};
+  return end_frame(FrameEnd::wait, [&] { return real(display, type, attributes); });
+}
+
+UNDERSTUDY_ENTRY EGLSyncKHR eglCreateSync64KHR(EGLDisplay display, EGLenum type,
+                                               const EGLAttribKHR* attributes) {
+  static constinit RealFunction<EGLSyncKHR (*)(EGLDisplay, EGLenum, const EGLAttribKHR*)> real{
+      egl, "eglCreateSync64KHR"};
+  return end_frame(FrameEnd::wait, [&] { return real(display, type, attributes); });
+}
+
+UNDERSTUDY_ENTRY EGLint eglClientWaitSync(EGLDisplay display, EGLSync sync, EGLint flags, EGLTime timeout) {
+  static constinit RealFunction<EGLint (*)(EGLDisplay, EGLSync, EGLint, EGLTime)> real{egl,
+                                                                                       "eglClientWaitSync"};
+  return end_frame(FrameEnd::wait, [&] { return real(display, sync, flags, timeout); });
+}
+
+UNDERSTUDY_ENTRY EGLint eglClientWaitSyncKHR(EGLDisplay display, EGLSyncKHR sync, EGLint flags,
+                                             EGLTimeKHR timeout) {
+  static constinit RealFunction<EGLint (*)(EGLDisplay, EGLSyncKHR, EGLint, EGLTimeKHR)> real{
+      egl, "eglClientWaitSyncKHR"};
+  return end_frame(FrameEnd::wait, [&] { return real(display, sync, flags, timeout); });
+}
+
+UNDERSTUDY_ENTRY EGLBoolean eglWaitSync(EGLDisplay display, EGLSync sync, EGLint flags) {
+  static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLSync, EGLint)> real{egl, "eglWaitSync"};
+  return end_frame(FrameEnd::wait, [&] { return real(display, sync, flags); });
+}
+
+UNDERSTUDY_ENTRY EGLint eglWaitSyncKHR(EGLDisplay display, EGLSyncKHR sync, EGLint flags) {
+  static constinit RealFunction<EGLint (*)(EGLDisplay, EGLSyncKHR, EGLint)> real{egl, "eglWaitSyncKHR"};
+  return end_frame(FrameEnd::wait, [&] { return real(display, sync, flags); });
+}
+
+UNDERSTUDY_ENTRY EGLImage eglCreateImage(EGLDisplay display, EGLContext context, EGLenum target,
+                                         EGLClientBuffer buffer, const EGLAttrib* attributes) {
+  static constinit RealFunction<EGLImage (*)(EGLDisplay, EGLContext, EGLenum, EGLClientBuffer,
+                                             const EGLAttrib*)>
+      real{egl, "eglCreateImage"};
+  return end_frame(FrameEnd::wait, [&] { return real(display, context, target, buffer, attributes); });
+}
+
+UNDERSTUDY_ENTRY EGLImageKHR eglCreateImageKHR(EGLDisplay display, EGLContext context, EGLenum target,
+                                               EGLClientBuffer buffer, const EGLint* attributes) {
+  static constinit RealFunction<EGLImageKHR (*)(EGLDisplay, EGLContext, EGLenum, EGLClientBuffer,
+                                                const EGLint*)>
+      real{egl, "eglCreateImageKHR"};
+  return end_frame(FrameEnd::wait, [&] { return real(display, context, target, buffer, attributes); });
 }
 
 UNDERSTUDY_ENTRY VoidFunction eglGetProcAddress(const char* name) {

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <initializer_list>
 
 #include "interceptor/address_space.h"
 #include "interceptor/context_ledger.h"
@@ -55,9 +56,14 @@ __attribute__((constructor)) void watch_forks() {
   pthread_atfork(nullptr, nullptr, &child_after_fork);
 }
 
+/// The values are those that switch an option on in spu/options.cc. The core reports invalid ones.
 bool switched_off() {
   const char* value = secure_getenv("UNDERSTUDY_DISABLE");
-  return value != nullptr && *value != '\0' && strcmp(value, "0") != 0;
+  if (value == nullptr) return false;
+  for (const char* on : {"1", "on", "yes", "true"}) {
+    if (strcmp(value, on) == 0) return true;
+  }
+  return false;
 }
 
 bool complete(const CoreServices& services) {

@@ -54,14 +54,22 @@ OSMesaContext created(OSMesaContext context, OSMesaContext share) {
   return context;
 }
 
-/// The application is about to get the address of a buffer: everything pending must be in it, including depth.
-/// ReadPixels of no pixels changes nothing, but counts as a read of the buffers.
+/// True if the core knows this thread's context, and OSMesa created it.
+bool has_current() {
+  return concerns_core() && entry_thread.current.system == osmesa && entry_thread.current.context != 0;
+}
+
+/// The application is about to get the address of a buffer: everything pending must be in it. No GL call is
+/// made for that, which could raise an error in the application's context.
 void settle_for_reading() {
-  if (!concerns_core() || entry_thread.current.system != osmesa || entry_thread.current.context == 0) return;
+  if (has_current()) before_frame_end(FrameEnd::finish);
+}
+
+/// The frame of a context ends when the context stops being current.
+void end_frame_of_current() {
+  if (!has_current()) return;
   before_frame_end(FrameEnd::finish);
-  char nothing;
-  const auto read = entry_thread.state.table->ReadPixels;
-  if (read != nullptr) read(0, 0, 0, 0, GL_RGBA, GL_UNSIGNED_BYTE, &nothing);
+  frame_ended(0);
 }
 
 }  // namespace
@@ -98,11 +106,19 @@ UNDERSTUDY_ENTRY OSMesaContext OSMesaCreateContextAttribs(const int* attributes,
 
 UNDERSTUDY_ENTRY void OSMesaDestroyContext(OSMesaContext context) {
   static constinit RealFunction<void (*)(OSMesaContext)> real{osmesa, "OSMesaDestroyContext"};
+  const auto destroy = [&] {
+    real(context);
+    return true;
+  };
   const bool told = concerns_core();
-  const ContextKey key{osmesa, 0, number(context)};
-  if (told) before_destroy(key);
-  real(context);
-  if (told) after_destroy(key);
+  // GLX and EGL keep a current context until it is released. OSMesa releases it and frees it at once.
+  if (has_current() && entry_thread.current.handle == number(context)) {
+    end_frame_of_current();
+    make_current({osmesa, 0, 0, 0, 0}, destroy);
+  } else {
+    destroy();
+  }
+  if (told) after_destroy({osmesa, 0, number(context)});
 }
 
 UNDERSTUDY_ENTRY GLboolean OSMesaMakeCurrent(OSMesaContext context, void* buffer, GLenum type, GLsizei width,
@@ -114,10 +130,7 @@ UNDERSTUDY_ENTRY GLboolean OSMesaMakeCurrent(OSMesaContext context, void* buffer
   const std::uintptr_t drawable = release ? 0 : number(buffer);
   const WantedContext wanted{osmesa, 0, release ? 0 : number(context), drawable,
                              release ? 0 : shape(type, width, height)};
-  if (concerns_core() && entry_thread.current.system == osmesa && entry_thread.current.context != 0) {
-    before_frame_end(FrameEnd::finish);
-    frame_ended(0);
-  }
+  end_frame_of_current();
   return make_current(wanted, [&] { return real(context, buffer, type, width, height); });
 }
 

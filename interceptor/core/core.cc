@@ -30,6 +30,7 @@
 #include "spu/report/report.h"
 #include "spu/track/share_group.h"
 #include "spu/volume/session/render_session.h"
+#include "spu/volume/volume_unit.h"
 
 namespace understudy::interceptor {
 namespace {
@@ -103,6 +104,8 @@ class Core {
     Member& member = member_of(context, share, server_ ? spu::remote_driver() : *thread.driver);
     member.window = system == WindowSystem::glx ? drawable : 0;
     spu::Chain& chain = member.chain;
+    auto* const volumes = chain.find<spu::VolumeUnit>();
+    if (volumes != nullptr && system == WindowSystem::osmesa) volumes->never_defer_window_depth();
     chain.make_current();
     // Contexts that share objects with this one may have uploaded volumes since its last frame.
     chain.frame_ended(spu::FrameEnd::make_current);

@@ -9,6 +9,8 @@
 #include <thread>
 #include <utility>
 
+#include "compositor/service/blocked_signals.h"
+
 namespace understudy::interceptor {
 namespace {
 
@@ -125,6 +127,7 @@ void RedrawRequest::frame_shown(std::uintptr_t window, bool behind) {
   due_ = {window, std::chrono::steady_clock::now() + pause_before_asking};
   // The thread sleeps until the program exits, and touches nothing that is torn down at exit.
   if (!has_thread_) {
+    const compositor::BlockedSignals blocked;
     std::thread([this] {
       try {
         ask_when_due();

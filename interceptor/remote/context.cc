@@ -39,8 +39,12 @@ void let_go(RemoteContext* context) {
 
 }  // namespace
 
-RemoteThread& remote_thread() {
+const RemoteThread& remote_thread() {
   return thread_state;
+}
+
+RemoteThread remote_thread(WindowSystem system) {
+  return thread_state.system == system ? thread_state : RemoteThread{};
 }
 
 RemoteContext* new_remote_context(const RemoteConfig& config, const RemoteContextWish& wish,
@@ -79,7 +83,8 @@ void enter_remote_context(const RemoteThread& thread) {
   thread_state = thread;
 }
 
-void leave_remote_context() {
+void leave_remote_context(WindowSystem system) {
+  if (thread_state.system != system) return;
   const Locked locked;
   let_go(thread_state.context);
   thread_state = {};

@@ -33,7 +33,9 @@ struct RemoteThread {
   std::uintptr_t read = 0;
 };
 
-RemoteThread& remote_thread();
+const RemoteThread& remote_thread();
+/// What the thread has current in `system`: nothing if its context is the other window system's.
+RemoteThread remote_thread(WindowSystem system);
 
 /// Returns null if the GL server cannot create such a context.
 RemoteContext* new_remote_context(const RemoteConfig& config, const RemoteContextWish& wish,
@@ -42,7 +44,8 @@ RemoteContext* new_remote_context(const RemoteConfig& config, const RemoteContex
 void say_no_opengl_es();
 void destroy_remote_context(RemoteContext* context);
 void enter_remote_context(const RemoteThread& thread);
-void leave_remote_context();
+/// Does nothing if the thread's context is the other window system's.
+void leave_remote_context(WindowSystem system);
 
 /// GLX 1.2 identifies configurations by their visual alone: the last one chosen for that visual is used.
 void note_choice(const RemoteConfig& config);

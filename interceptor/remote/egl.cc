@@ -85,14 +85,13 @@ struct CurrentSurfaces {
 };
 
 CurrentSurfaces current_surfaces() {
-  const RemoteThread& thread = remote_thread();
-  if (thread.system != WindowSystem::egl || thread.context == nullptr) return {};
+  const RemoteThread thread = remote_thread(WindowSystem::egl);
   return {thread.draw, thread.read};
 }
 
 void leave_surfaces() {
   const CurrentSurfaces earlier = current_surfaces();
-  leave_remote_context();
+  leave_remote_context(WindowSystem::egl);
   release(earlier.draw);
   release(earlier.read);
 }
@@ -362,16 +361,16 @@ EGLBoolean ReleaseThread() {
 }
 
 EGLContext GetCurrentContext() {
-  return remote_thread().context;
+  return remote_thread(WindowSystem::egl).context;
 }
 
 EGLDisplay GetCurrentDisplay() {
-  return remote_thread().display;
+  return remote_thread(WindowSystem::egl).display;
 }
 
 EGLSurface GetCurrentSurface(EGLint which) {
-  const RemoteThread& thread = remote_thread();
-  return reinterpret_cast<EGLSurface>(which == EGL_READ ? thread.read : thread.draw);
+  const CurrentSurfaces current = current_surfaces();
+  return reinterpret_cast<EGLSurface>(which == EGL_READ ? current.read : current.draw);
 }
 
 EGLBoolean SwapBuffers(EGLDisplay display, EGLSurface surface) {

@@ -196,7 +196,7 @@ void DestroyContext(Display*, GLXContext context) {
 
 Bool make_current(Display* display, GLXDrawable draw, GLXDrawable read, GLXContext context) {
   if (context == nullptr) {
-    leave_remote_context();
+    leave_remote_context(WindowSystem::glx);
     return True;
   }
   // The server must have processed the window's creation before our own connection asks for the window.
@@ -214,19 +214,19 @@ Bool MakeContextCurrent(Display* display, GLXDrawable draw, GLXDrawable read, GL
 }
 
 GLXContext GetCurrentContext() {
-  return reinterpret_cast<GLXContext>(remote_thread().context);
+  return reinterpret_cast<GLXContext>(remote_thread(WindowSystem::glx).context);
 }
 
 Display* GetCurrentDisplay() {
-  return static_cast<Display*>(remote_thread().display);
+  return static_cast<Display*>(remote_thread(WindowSystem::glx).display);
 }
 
 GLXDrawable GetCurrentDrawable() {
-  return remote_thread().draw;
+  return remote_thread(WindowSystem::glx).draw;
 }
 
 GLXDrawable GetCurrentReadDrawable() {
-  return remote_thread().read;
+  return remote_thread(WindowSystem::glx).read;
 }
 
 /// The frame's image follows at the end of the frame; what the application has requested of its windows must
@@ -285,17 +285,14 @@ int QueryContext(Display*, GLXContext context, int attribute, int* value) {
 }
 
 GLXPbuffer CreatePbuffer(Display* display, GLXFBConfig config, const int* attributes) {
-  auto* made = static_cast<Pbuffer*>(calloc(1, sizeof(Pbuffer)));
-  if (made == nullptr || config == nullptr) {
-    free(made);
-    return None;
-  }
+  const XID id = config != nullptr ? new_id(display) : None;
+  auto* made = id != None ? static_cast<Pbuffer*>(calloc(1, sizeof(Pbuffer))) : nullptr;
+  if (made == nullptr) return None;
   for (; attributes != nullptr && attributes[0] != None; attributes += 2) {
     if (attributes[0] == GLX_PBUFFER_WIDTH) made->width = attributes[1];
     if (attributes[0] == GLX_PBUFFER_HEIGHT) made->height = attributes[1];
   }
-  // Allocated from the application's own ids, as Xlib would do for a window.
-  made->id = XAllocID(display);
+  made->id = id;
   made->config = config_of(config)->id;
   pthread_mutex_lock(&pbuffer_lock);
   made->next = pbuffers;

@@ -162,6 +162,12 @@ Display* default_display() {
   return opened;
 }
 
+XID new_id(Display* display) {
+  const Locked locked;
+  const Server* server = server_of(display);
+  return server != nullptr ? xcb_functions.generate_id(server->connection) : None;
+}
+
 bool extent_of(Display* display, XID drawable, int* width, int* height) {
   const Locked locked;
   const Server* server = server_of(display);

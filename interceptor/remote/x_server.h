@@ -26,6 +26,10 @@ const Xlib* xlib();
 /// The server named by DISPLAY, opened once, for callers that name no display; null if there is none.
 Display* default_display();
 
+/// A new id, unique on the display's server, for a drawable that the server does not know; None without a
+/// connection. Xlib's own (XAllocID) needs the display's lock, and a call of Xlib before the next one.
+XID new_id(Display* display);
+
 /// Stores the drawable's size; returns false if there is no such drawable.
 bool extent_of(Display* display, XID drawable, int* width, int* height);
 

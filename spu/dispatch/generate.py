@@ -30,8 +30,8 @@ from registry import read_commands, read_egl_commands, read_enumerants, read_rul
 
 GL_ENTRY_FILES = 6  # compiled in parallel
 
-# Written by hand in interceptor/glx.cc and egl.cc: they create, destroy or switch contexts, end a frame, return addresses, or
-# make calls of OpenGL.
+# Written by hand in interceptor/glx.cc and egl.cc: they create, destroy or switch contexts, end or publish a frame, return
+# addresses, or make calls of OpenGL.
 BY_HAND = {
     "glXCopySubBufferMESA", "glXCreateContext", "glXCreateContextAttribsARB", "glXCreateContextWithConfigSGIX",
     "glXCreateNewContext", "glXDestroyContext", "glXFreeContextEXT", "glXGetCurrentContext", "glXGetCurrentDisplay",
@@ -39,9 +39,9 @@ BY_HAND = {
     "glXGetProcAddress", "glXGetProcAddressARB", "glXImportContextEXT", "glXMakeContextCurrent", "glXMakeCurrent",
     "glXMakeCurrentReadSGI", "glXSwapBuffers", "glXSwapBuffersMscOML", "glXUseXFont",
     "glXWaitGL",
-    "eglCopyBuffers", "eglCreateContext", "eglDestroyContext", "eglGetCurrentContext", "eglGetCurrentDisplay",
-    "eglGetCurrentSurface", "eglGetProcAddress", "eglMakeCurrent", "eglReleaseThread", "eglSwapBuffers",
-    "eglTerminate", "eglWaitClient", "eglWaitGL",
+    "eglClientWaitSync", "eglCopyBuffers", "eglCreateContext", "eglCreateImage", "eglCreateSync", "eglDestroyContext",
+    "eglGetCurrentContext", "eglGetCurrentDisplay", "eglGetCurrentSurface", "eglGetProcAddress", "eglMakeCurrent",
+    "eglReleaseThread", "eglSwapBuffers", "eglTerminate", "eglWaitClient", "eglWaitGL", "eglWaitSync",
 }
 
 # Types of IRIX's video and digital-media libraries: they are in no header of ours, and no Linux driver has these commands.

@@ -5,6 +5,8 @@
 #include <string_view>
 
 #include "dispatch/call_words.h"
+#include "spu/remote/interleaved_arrays.h"
+#include "spu/stream/bound_buffers.h"
 
 namespace understudy::spu {
 namespace {
@@ -112,13 +114,19 @@ void ClientState::point(Array& array, GLint size, GLenum type, std::uint64_t str
   array.elsewhere = false;
 }
 
-void ClientState::enable_array(GLenum array, bool enabled) {
+/// `unit` is for texture coordinates.
+void ClientState::enable_array(GLenum array, GLuint unit, bool enabled) {
   if (client_.vertex_array != 0) return;
   if (array == GL_TEXTURE_COORD_ARRAY) {
-    client_.texture_coordinates[client_.active_texture].enabled = enabled;
+    client_.texture_coordinates[unit].enabled = enabled;
   } else if (names_of_array(array) != nullptr) {
     client_.fixed[array].enabled = enabled;
   }
+}
+
+void ClientState::push(GLbitfield mask) {
+  pushed_.push_back({mask, client_, bound_buffer(GL_PIXEL_UNPACK_BUFFER), bound_buffer(GL_PIXEL_PACK_BUFFER),
+                     bound_buffer(GL_ELEMENT_ARRAY_BUFFER)});
 }
 
 void ClientState::pop() {
@@ -127,17 +135,39 @@ void ClientState::pop() {
   if ((pushed.mask & GL_CLIENT_PIXEL_STORE_BIT) != 0) {
     client_.unpack = pushed.client.unpack;
     client_.pack = pushed.client.pack;
+    bind_buffer(GL_PIXEL_UNPACK_BUFFER, pushed.unpack_buffer);
+    bind_buffer(GL_PIXEL_PACK_BUFFER, pushed.pack_buffer);
   }
   if ((pushed.mask & GL_CLIENT_VERTEX_ARRAY_BIT) != 0) {
     Client restored = pushed.client;
     restored.unpack = client_.unpack;
     restored.pack = client_.pack;
     client_ = std::move(restored);
+    bind_buffer(GL_ELEMENT_ARRAY_BUFFER, pushed.element_buffer);
   }
   pushed_.pop_back();
 }
 
-/// Tracks the gl*Pointer commands; arguments are in the order of the registry.
+/// glClientAttribDefaultEXT.
+void ClientState::reset(GLbitfield mask) {
+  if ((mask & GL_CLIENT_PIXEL_STORE_BIT) != 0) {
+    client_.unpack = {};
+    client_.pack = {};
+    bind_buffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    bind_buffer(GL_PIXEL_PACK_BUFFER, 0);
+  }
+  if ((mask & GL_CLIENT_VERTEX_ARRAY_BIT) == 0) return;
+  client_.active_texture = 0;
+  client_.array_buffer = 0;
+  bind_buffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+  if (client_.vertex_array != 0) return;
+  client_.fixed.clear();
+  client_.texture_coordinates.clear();
+  for (auto& [index, array] : client_.generic) array = {.divisor = array.divisor};
+}
+
+/// Tracks the gl*Pointer commands; arguments are in the order of the registry. Those of EXT_vertex_array have a
+/// number of elements before the pointer.
 void ClientState::follow_pointer(CallId call, const std::uint64_t* words) {
   const auto fixed = [&](GLenum array, GLint size, GLenum type, std::uint64_t stride, std::uint64_t pointer) {
     point(client_.fixed[array], size, type, stride, pointer);
@@ -146,10 +176,16 @@ void ClientState::follow_pointer(CallId call, const std::uint64_t* words) {
   switch (call) {
     case CallId::VertexPointer:
       return fixed(GL_VERTEX_ARRAY, size, GLenum(words[1]), words[2], words[3]);
+    case CallId::VertexPointerEXT:
+      return fixed(GL_VERTEX_ARRAY, size, GLenum(words[1]), words[2], words[4]);
     case CallId::NormalPointer:
       return fixed(GL_NORMAL_ARRAY, 3, GLenum(words[0]), words[1], words[2]);
+    case CallId::NormalPointerEXT:
+      return fixed(GL_NORMAL_ARRAY, 3, GLenum(words[0]), words[1], words[3]);
     case CallId::ColorPointer:
       return fixed(GL_COLOR_ARRAY, size, GLenum(words[1]), words[2], words[3]);
+    case CallId::ColorPointerEXT:
+      return fixed(GL_COLOR_ARRAY, size, GLenum(words[1]), words[2], words[4]);
     case CallId::SecondaryColorPointer:
     case CallId::SecondaryColorPointerEXT:
       return fixed(GL_SECONDARY_COLOR_ARRAY, size, GLenum(words[1]), words[2], words[3]);
@@ -158,11 +194,21 @@ void ClientState::follow_pointer(CallId call, const std::uint64_t* words) {
       return fixed(GL_FOG_COORD_ARRAY, 1, GLenum(words[0]), words[1], words[2]);
     case CallId::IndexPointer:
       return fixed(GL_INDEX_ARRAY, 1, GLenum(words[0]), words[1], words[2]);
+    case CallId::IndexPointerEXT:
+      return fixed(GL_INDEX_ARRAY, 1, GLenum(words[0]), words[1], words[3]);
     case CallId::EdgeFlagPointer:
       return fixed(GL_EDGE_FLAG_ARRAY, 1, GL_UNSIGNED_BYTE, words[0], words[1]);
+    case CallId::EdgeFlagPointerEXT:
+      return fixed(GL_EDGE_FLAG_ARRAY, 1, GL_UNSIGNED_BYTE, words[0], words[2]);
     case CallId::TexCoordPointer:
+    case CallId::TexCoordPointerEXT:
       return point(client_.texture_coordinates[client_.active_texture], size, GLenum(words[1]), words[2],
-                   words[3]);
+                   words[call == CallId::TexCoordPointerEXT ? 4 : 3]);
+    case CallId::MultiTexCoordPointerEXT:
+      return point(client_.texture_coordinates[GLuint(words[0]) - GL_TEXTURE0], GLint(words[1]),
+                   GLenum(words[2]), words[3], words[4]);
+    case CallId::InterleavedArrays:
+      return point_interleaved(GLenum(words[0]), GLsizei(words[1]), words[2]);
     default:
       break;
   }
@@ -174,6 +220,26 @@ void ClientState::follow_pointer(CallId call, const std::uint64_t* words) {
   array.normalized = full && words[3] != 0;
   array.integer = call == CallId::VertexAttribIPointer || call == CallId::VertexAttribIPointerEXT;
   array.wide = call == CallId::VertexAttribLPointer || call == CallId::VertexAttribLPointerEXT;
+}
+
+/// The equivalent commands of OpenGL 2.1, section 2.8.
+void ClientState::point_interleaved(GLenum format, GLsizei stride, std::uint64_t pointer) {
+  const InterleavedFormat* const is = interleaved_format(format);
+  if (is == nullptr || stride < 0) return;
+  const std::uint64_t step = stride == 0 ? is->bytes() : std::uint64_t(stride);
+  const GLuint unit = client_.active_texture;
+  for (const GLenum unused : {GL_EDGE_FLAG_ARRAY, GL_INDEX_ARRAY, GL_SECONDARY_COLOR_ARRAY, GL_FOG_COORD_ARRAY})
+    enable_array(unused, unit, false);
+  enable_array(GL_TEXTURE_COORD_ARRAY, unit, is->texture_coordinates != 0);
+  enable_array(GL_COLOR_ARRAY, unit, is->color != 0);
+  enable_array(GL_NORMAL_ARRAY, unit, is->normal);
+  enable_array(GL_VERTEX_ARRAY, unit, true);
+  if (is->texture_coordinates != 0)
+    point(client_.texture_coordinates[unit], is->texture_coordinates, GL_FLOAT, step, pointer);
+  if (is->color != 0)
+    point(client_.fixed[GL_COLOR_ARRAY], is->color, is->color_type, step, pointer + is->color_at());
+  if (is->normal) point(client_.fixed[GL_NORMAL_ARRAY], 3, GL_FLOAT, step, pointer + is->normal_at());
+  point(client_.fixed[GL_VERTEX_ARRAY], is->position, GL_FLOAT, step, pointer + is->position_at());
 }
 
 void ClientState::follow_vertex_array(CallId call, const std::uint64_t* words) {
@@ -201,6 +267,10 @@ void ClientState::follow_vertex_array(CallId call, const std::uint64_t* words) {
         client_.generic[GLuint(words[0])].enabled =
             call == CallId::EnableVertexAttribArray || call == CallId::EnableVertexAttribArrayARB;
       }
+      return;
+    case CallId::EnableVertexArrayAttrib:
+    case CallId::DisableVertexArrayAttrib:
+      if (words[0] == 0) client_.generic[GLuint(words[1])].enabled = call == CallId::EnableVertexArrayAttrib;
       return;
     case CallId::VertexAttribDivisor:
     case CallId::VertexAttribDivisorARB:
@@ -247,8 +317,12 @@ void ClientState::note(CallId call, const std::uint64_t* words) {
       mode_ = GLenum(words[0]);
       return;
     case CallId::PushClientAttrib:
-      pushed_.push_back({GLbitfield(words[0]), client_});
-      return;
+      return push(GLbitfield(words[0]));
+    case CallId::PushClientAttribDefaultEXT:
+      push(GLbitfield(words[0]));
+      return reset(GLbitfield(words[0]));
+    case CallId::ClientAttribDefaultEXT:
+      return reset(GLbitfield(words[0]));
     case CallId::PopClientAttrib:
       return pop();
     default:
@@ -264,24 +338,37 @@ void ClientState::follow_arrays(CallId call, const std::uint64_t* words) {
       return;
     case CallId::EnableClientState:
       restarts_ |= GLenum(words[0]) == GL_PRIMITIVE_RESTART_NV;
-      return enable_array(GLenum(words[0]), true);
+      return enable_array(GLenum(words[0]), client_.active_texture, true);
     case CallId::DisableClientState:
-      return enable_array(GLenum(words[0]), false);
-    case CallId::Enable:
+      return enable_array(GLenum(words[0]), client_.active_texture, false);
+    case CallId::EnableClientStateiEXT:
     case CallId::EnableClientStateIndexedEXT:
+      return enable_array(GLenum(words[0]), GLuint(words[1]), true);
+    case CallId::DisableClientStateiEXT:
+    case CallId::DisableClientStateIndexedEXT:
+      return enable_array(GLenum(words[0]), GLuint(words[1]), false);
+    case CallId::Enable:
       restarts_ |=
           GLenum(words[0]) == GL_PRIMITIVE_RESTART || GLenum(words[0]) == GL_PRIMITIVE_RESTART_FIXED_INDEX;
       return;
     case CallId::VertexPointer:
+    case CallId::VertexPointerEXT:
     case CallId::NormalPointer:
+    case CallId::NormalPointerEXT:
     case CallId::ColorPointer:
+    case CallId::ColorPointerEXT:
     case CallId::SecondaryColorPointer:
     case CallId::SecondaryColorPointerEXT:
     case CallId::FogCoordPointer:
     case CallId::FogCoordPointerEXT:
     case CallId::IndexPointer:
+    case CallId::IndexPointerEXT:
     case CallId::EdgeFlagPointer:
+    case CallId::EdgeFlagPointerEXT:
     case CallId::TexCoordPointer:
+    case CallId::TexCoordPointerEXT:
+    case CallId::MultiTexCoordPointerEXT:
+    case CallId::InterleavedArrays:
     case CallId::VertexAttribPointer:
     case CallId::VertexAttribPointerARB:
     case CallId::VertexAttribIPointer:
@@ -322,7 +409,7 @@ std::optional<GLint> ClientState::array_value(GLenum name) const {
   return std::nullopt;
 }
 
-std::optional<GLint> ClientState::value(GLenum name) const {
+std::optional<GLint> ClientState::value(GLenum name, Asker asker) const {
   const auto fields = store_fields();
   for (std::size_t i = 0; i < fields.size(); ++i) {
     if (name == unpack_names[i]) return client_.unpack.*fields[i];
@@ -344,6 +431,9 @@ std::optional<GLint> ClientState::value(GLenum name) const {
     case GL_CLIENT_ACTIVE_TEXTURE:
       return GLint(GL_TEXTURE0 + client_.active_texture);
     default:
+      // Extensions bind buffers by calls that are not tracked here, so an application's query is sent.
+      if (const GLenum target = target_of_binding(name); target != GL_NONE && asker == Asker::encoder)
+        return GLint(bound_buffer(target));
       return client_.vertex_array == 0 ? array_value(name) : std::nullopt;
   }
 }
@@ -409,7 +499,7 @@ bool ClientState::answer(CallId call, const std::uint64_t* words, Asker asker, s
     case CallId::GetFloatv:
     case CallId::GetDoublev:
     case CallId::GetBooleanv: {
-      const auto known = value(GLenum(words[0]));
+      const auto known = value(GLenum(words[0]), asker);
       if (!known) return false;
       if (call == CallId::GetIntegerv) write<GLint>(words[1], *known);
       if (call == CallId::GetInteger64v) write<GLint64>(words[1], *known);

@@ -55,7 +55,7 @@ class ClientState {
     bool integer = false;
     bool wide = false;  ///< glVertexAttribLPointer
   };
-  /// The state saved by glPushClientAttrib, except for buffer bindings.
+  /// The state saved by glPushClientAttrib, except for the buffers below.
   struct Client {
     PixelStore unpack;
     PixelStore pack;
@@ -69,20 +69,26 @@ class ClientState {
   struct Pushed {
     GLbitfield mask;
     Client client;
+    GLuint unpack_buffer;
+    GLuint pack_buffer;
+    GLuint element_buffer;
   };
 
   void note_pixel_store(GLenum name, GLint value);
   void bind_buffer(GLenum target, GLuint buffer);
   void delete_buffers(GLsizei count, const GLuint* buffers);
   void point(Array& array, GLint size, GLenum type, std::uint64_t stride, std::uint64_t pointer);
-  void enable_array(GLenum array, bool enabled);
+  void enable_array(GLenum array, GLuint unit, bool enabled);
+  void push(GLbitfield mask);
   void pop();
+  void reset(GLbitfield mask);
   void follow_pointer(CallId call, const std::uint64_t* words);
+  void point_interleaved(GLenum format, GLsizei stride, std::uint64_t pointer);
   void follow_arrays(CallId call, const std::uint64_t* words);
   void follow_vertex_array(CallId call, const std::uint64_t* words);
   const Array& fixed_array(GLenum array) const;
   const Array& generic_array(GLuint index) const;
-  std::optional<GLint> value(GLenum name) const;
+  std::optional<GLint> value(GLenum name, Asker asker) const;
   std::optional<GLint> array_value(GLenum name) const;
   std::optional<GLint> attribute_value(GLuint index, GLenum name, Asker asker) const;
   std::optional<std::uint64_t> pointer(GLenum name) const;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "spu/chain_text.h"
+#include "spu/lost_context.h"
 #include "spu/pack/pack.h"
 #include "spu/stream/answers.h"
 #include "spu/stream/event.h"
@@ -21,6 +22,8 @@ namespace {
 constexpr std::size_t most_unknown_bytes = std::size_t(64) * 1024;
 /// Limit for the extensions queried at once; contexts have some hundreds.
 constexpr GLint most_extensions = 4096;
+/// Limit for one query of a mapped buffer's contents.
+constexpr std::uint64_t most_refreshed_bytes = std::uint64_t(16) << 20;
 
 std::byte* memory_at(std::uint64_t word) {
   return reinterpret_cast<std::byte*>(static_cast<std::uintptr_t>(word));
@@ -73,6 +76,24 @@ bool is_text(CallId call) {
 
 std::uint64_t words_of_text(CallId call, const std::uint64_t* words) {
   return words[0] << 32 | (call == CallId::GetStringi ? std::uint32_t(words[1]) + 1 : 0);
+}
+
+/// Whether the answered call shows that OpenGL has executed the calls before it, or before a fence, so that the
+/// application may read what they have written into persistent mappings.
+bool has_waited(const PackedCall& call, std::uint64_t result) {
+  switch (call.call) {
+    case CallId::Finish:
+      return true;
+    case CallId::ClientWaitSync:
+      return result == GL_ALREADY_SIGNALED || result == GL_CONDITION_SATISFIED;
+    case CallId::GetSynciv: {
+      const bool asks = GLenum(call.words[1]) == GL_SYNC_STATUS && GLsizei(call.words[2]) > 0;
+      return asks && call.words[4] != 0 &&
+             *reinterpret_cast<const GLint*>(memory_at(call.words[4])) == GL_SIGNALED;
+    }
+    default:
+      return false;
+  }
 }
 
 }  // namespace
@@ -183,6 +204,7 @@ void Remote::frame_ended(FrameEnd kind) {
   if (kind == FrameEnd::wait) {
     pack_.hand_on();
     server_.wait_for_frames();
+    refresh_mappings();
   }
 }
 
@@ -207,7 +229,7 @@ std::optional<std::uint64_t> Remote::constant(CallId call, const std::uint64_t* 
 }
 
 std::optional<std::uint64_t> Remote::known(CallId call, const std::uint64_t* words) {
-  if (server_.lost()) return 0;
+  if (server_.lost()) return answer_of_lost_context(call, words);
   if (!answers(call)) return std::nullopt;
   if (call == CallId::GetError && without_error_) return GL_NO_ERROR;
   if (pack_.inside_begin()) return std::nullopt;
@@ -216,7 +238,7 @@ std::optional<std::uint64_t> Remote::known(CallId call, const std::uint64_t* wor
     const auto found = mappings_.find(mapped_buffer(call, words));
     if (words[2] != 0)
       *reinterpret_cast<void**>(memory_at(words[2])) =
-          found == mappings_.end() ? nullptr : found->second.data();
+          found == mappings_.end() ? nullptr : found->second.memory.data();
     return 0;
   }
   if (is_integer_query(call) && GLenum(words[0]) == GL_DOUBLEBUFFER && words[1] != 0) {
@@ -268,8 +290,7 @@ std::uint64_t Remote::ask(CallId call, const std::uint64_t* words) {
 }
 
 GLuint Remote::mapped_buffer(CallId call, const std::uint64_t* words) const {
-  const bool named = std::string_view(call_name(call)).find("Named") != std::string_view::npos;
-  return named ? GLuint(words[0]) : state_.bound_buffer(GLenum(words[0]));
+  return is_by_name(call) ? GLuint(words[0]) : state_.bound_buffer(GLenum(words[0]));
 }
 
 void Remote::before(CallId call, const std::uint64_t* words, Records& to) {
@@ -289,21 +310,13 @@ void Remote::before(CallId call, const std::uint64_t* words, Records& to) {
 
 /// Drops the mappings that the call ends.
 void Remote::drop_mappings(CallId call, const std::uint64_t* words) {
-  switch (call) {
-    case CallId::DeleteBuffers:
-    case CallId::DeleteBuffersARB: {
-      const auto* names = reinterpret_cast<const GLuint*>(memory_at(words[1]));
-      for (GLsizei i = 0; i < GLsizei(words[0]) && names != nullptr; ++i) mappings_.erase(names[i]);
-      return;
-    }
-    case CallId::BufferData:
-    case CallId::BufferDataARB:
-    case CallId::NamedBufferData:
-    case CallId::NamedBufferDataEXT:
-      mappings_.erase(mapped_buffer(call, words));
-      return;
-    default:
-      if (unmaps_buffer(call)) mappings_.erase(mapped_buffer(call, words));
+  if (deletes_buffers(call)) {
+    for (const GLuint buffer : deleted_buffers(words)) mappings_.erase(buffer);
+  } else if (unmaps_buffer(call)) {
+    mappings_.erase(mapped_buffer(call, words));
+  } else if (replaces_storage(call)) {
+    const auto found = mappings_.find(mapped_buffer(call, words));
+    if (found != mappings_.end() && !found->second.persistent) mappings_.erase(found);
   }
 }
 
@@ -318,7 +331,10 @@ std::uint64_t Remote::take(const Records& records, const PackedCall* last) {
     return 0;
   }
   const std::optional<CallAnswer> answer = server_.ask(records);
-  return answer ? apply(*last, *answer) : 0;
+  if (!answer) return answer_of_lost_context(last->call, last->words);
+  const std::uint64_t result = apply(*last, *answer);
+  if (has_waited(*last, result)) refresh_mappings();
+  return result;
 }
 
 std::uint64_t Remote::apply(const PackedCall& call, const CallAnswer& answer) {
@@ -380,13 +396,22 @@ std::uint64_t Remote::keep_text(const PackedCall& call, const AnsweredOutput& ou
 
 std::uint64_t Remote::map(const PackedCall& call, std::uint64_t bytes, const AnsweredOutput& contents) {
   // The GL server has mapped this many bytes, so they are at most the size of the application's buffer.
-  const std::uint8_t length = argument_named(call_shape(call.call), "length");
-  if (length != no_argument) bytes = std::max(bytes, call.words[length]);
-  auto& memory = mappings_[mapped_buffer(call.call, call.words)];
-  memory.assign(std::size_t(bytes) / sizeof(std::max_align_t) + 1, {});
+  const CallShape& shape = call_shape(call.call);
+  const std::uint8_t length = argument_named(shape, "length");
+  Mapping& mapping = mappings_[mapped_buffer(call.call, call.words)];
+  mapping = {.bytes = bytes};
+  if (length != no_argument) {
+    const auto access = GLbitfield(call.words[argument_named(shape, "access")]);
+    mapping.offset = call.words[argument_named(shape, "offset")];
+    mapping.bytes = std::max(bytes, call.words[length]);
+    mapping.persistent = (access & GL_MAP_PERSISTENT_BIT) != 0;
+    mapping.is_read = (access & GL_MAP_READ_BIT) != 0;
+  }
+  mapping.memory.assign(std::size_t(mapping.bytes) / sizeof(std::max_align_t) + 1, {});
   if (!contents.bytes.empty())
-    std::memcpy(memory.data(), contents.bytes.data(), std::min<std::size_t>(bytes, contents.bytes.size()));
-  const std::uint64_t first = reinterpret_cast<std::uintptr_t>(memory.data());
+    std::memcpy(mapping.memory.data(), contents.bytes.data(),
+                std::min<std::size_t>(mapping.bytes, contents.bytes.size()));
+  const std::uint64_t first = reinterpret_cast<std::uintptr_t>(mapping.memory.data());
   // Sends the address by which the following writes will refer to the mapping.
   const std::uint64_t words[] = {stable_id(call.call), first};
   Records records;
@@ -394,6 +419,48 @@ std::uint64_t Remote::map(const PackedCall& call, std::uint64_t bytes, const Ans
   server_.send(records);
   writes_.after(chain_.driver(), call.call, call.words, first);
   return first;
+}
+
+/// Fetches what OpenGL has written into persistent mappings that the application reads.
+void Remote::refresh_mappings() {
+  const auto is_refreshed = [](const auto& entry) { return entry.second.persistent && entry.second.is_read; };
+  if (std::ranges::none_of(mappings_, is_refreshed)) return;
+  // The application's writes so far must be in the buffers, or they would be overwritten.
+  Records writes;
+  writes_.append_persistent(chain_.driver(), writes);
+  server_.send(writes);
+  for (auto& entry : mappings_) {
+    if (!is_refreshed(entry)) continue;
+    auto& [buffer, mapping] = entry;
+    const std::vector<std::byte> contents = contents_of(buffer, mapping);
+    if (!contents.empty() && !writes_.refresh(buffer, contents))
+      std::memcpy(mapping.memory.data(), contents.data(), contents.size());
+  }
+}
+
+/// What the mapped part of a buffer contains on the GL server; empty if the GL server does not answer.
+std::vector<std::byte> Remote::contents_of(GLuint buffer, const Mapping& mapping) {
+  constexpr GLenum target = GL_COPY_READ_BUFFER;
+  std::vector<std::byte> contents;
+  Records records;
+  const auto bind = [&](GLuint bound) {
+    const std::uint64_t words[] = {target, bound};
+    records.append_plain(stable_id(CallId::BindBuffer), words);
+  };
+  bind(buffer);
+  while (contents.size() < mapping.bytes) {
+    const std::uint64_t bytes = std::min(mapping.bytes - contents.size(), most_refreshed_bytes);
+    const std::uint64_t words[] = {target, mapping.offset + contents.size(), bytes, somewhere};
+    question_encoder_.encode(CallId::GetBufferSubData, words, records);
+    const std::optional<CallAnswer> answer = server_.ask(records);
+    records.clear();
+    if (!answer || answer->outputs.empty() || answer->outputs[0].bytes.size() != bytes) break;
+    contents.insert(contents.end(), answer->outputs[0].bytes.begin(), answer->outputs[0].bytes.end());
+  }
+  bind(state_.bound_buffer(target));
+  server_.send(records);
+  if (contents.size() < mapping.bytes) contents.clear();
+  return contents;
 }
 
 constinit const UnitDescription remote_description{

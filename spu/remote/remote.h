@@ -52,6 +52,14 @@ class Remote final : public Unit, public RecordTaker {
 
  private:
   using Value = std::pair<CallId, std::uint64_t>;  ///< a query, and its argument words
+  /// The application's memory of a mapped buffer.
+  struct Mapping {
+    std::vector<std::max_align_t> memory;
+    std::uint64_t offset = 0;  ///< of its first byte in the buffer
+    std::uint64_t bytes = 0;
+    bool persistent = false;
+    bool is_read = false;
+  };
 
   void introduce();
   void tell_current(Records& to);
@@ -68,6 +76,8 @@ class Remote final : public Unit, public RecordTaker {
   std::uint64_t map(const PackedCall& call, std::uint64_t bytes, const AnsweredOutput& contents);
   GLuint mapped_buffer(CallId call, const std::uint64_t* words) const;
   void drop_mappings(CallId call, const std::uint64_t* words);
+  void refresh_mappings();
+  std::vector<std::byte> contents_of(GLuint buffer, const Mapping& mapping);
 
   Chain& chain_;
   ServerConnection& server_;
@@ -76,8 +86,8 @@ class Remote final : public Unit, public RecordTaker {
   Encoder question_encoder_;
   ClientState state_;
   FrontBuffer front_;
-  MappedBuffers writes_;
-  std::map<GLuint, std::vector<std::max_align_t>> mappings_;  ///< by buffer: the application's memory
+  MappedBuffers writes_{MappedMemory::of_this_process};
+  std::map<GLuint, Mapping> mappings_;  ///< by buffer
   std::map<Value, std::vector<std::byte>> constants_;
   std::map<Value, const char*> texts_;
   RecordedContext context_;

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <pthread.h>
-#include <signal.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -13,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "compositor/service/blocked_signals.h"
 #include "compositor/service/limits.h"
 #include "compositor/transport/socket.h"
 #include "spu/report/counters.h"
@@ -70,16 +69,8 @@ ServerConnection::ServerConnection(const std::string& address, FrontEnd& front) 
   receiver_ = start(&ServerConnection::receive_all);
 }
 
-/// Starts a thread with all signals blocked, because the application's signals are for its own threads.
 std::thread ServerConnection::start(void (ServerConnection::*work)()) {
-  sigset_t all;
-  sigset_t before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);
-  struct Restored {
-    const sigset_t& mask;
-    ~Restored() { pthread_sigmask(SIG_SETMASK, &mask, nullptr); }
-  } const restored{before};
+  const compositor::BlockedSignals blocked;
   return std::thread([this, work] {
     try {
       (this->*work)();

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -29,6 +30,11 @@ constexpr std::size_t page = 65536;  // the largest page size of known systems
 constexpr std::size_t whole_pages = (sizeof(ProcessCounters) + page - 1) / page * page;
 alignas(page) constinit std::array<std::byte, whole_pages> memory{};
 
+/// This process is a forked child that has no file yet.
+constinit std::atomic<bool> forked = false;
+/// The calling thread's slot in ProcessCounters::calls; null before its first call.
+constinit thread_local std::uint64_t* call_counter = nullptr;
+
 ProcessCounters& counters_in_memory() {
   return *std::launder(reinterpret_cast<ProcessCounters*>(memory.data()));
 }
@@ -38,7 +44,15 @@ void say_that_figures_are_lost(const char* path, int reason) {
                std::strerror(reason));
 }
 
-void map_file_of_this_process() {
+/// Writes what was counted without a file. Returns 0, or the reason of a failure.
+int write_figures(int file) {
+  const ssize_t written = pwrite(file, memory.data(), sizeof(ProcessCounters), 0);
+  if (written == static_cast<ssize_t>(sizeof(ProcessCounters))) return 0;
+  return written < 0 ? errno : ENOSPC;
+}
+
+/// A process that executes another program continues its file, so figures are written only if there are some.
+void map_file_of_this_process(bool has_figures) {
   const char* folder = ::secure_getenv("UNDERSTUDY_RUN_DIR");
   if (folder == nullptr || *folder == '\0') return;
   std::array<char, 4096> path{};
@@ -48,8 +62,10 @@ void map_file_of_this_process() {
   const int file = open(path.data(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (file < 0) return say_that_figures_are_lost(path.data(), errno);
   // The space is allocated now, so that a full disk only loses the figures instead of raising SIGBUS in the
-  // viewer. If this fails, the zero pages stay as private counters, and the empty file informs the launcher.
-  if (const int reason = posix_fallocate(file, 0, static_cast<off_t>(whole_pages)); reason != 0) {
+  // viewer. If this fails, the private pages stay as counters, and the empty file informs the launcher.
+  int reason = posix_fallocate(file, 0, static_cast<off_t>(whole_pages));
+  if (reason == 0 && has_figures) reason = write_figures(file);
+  if (reason != 0) {
     say_that_figures_are_lost(path.data(), reason);
     if (ftruncate(file, 0) != 0) unlink(path.data());
   } else {
@@ -69,16 +85,17 @@ void introduce_this_process() {
 }
 
 /// A child has its own counters at the same address: its parent's pages are shared and must not count the
-/// child's calls.
+/// child's calls. It gets a file when it first needs its counters, because most children only execute another
+/// program.
 void start_anew_after_fork() {
   (void)mmap(memory.data(), whole_pages, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1,
              0);
-  map_file_of_this_process();
-  introduce_this_process();
+  call_counter = nullptr;
+  forked = true;
 }
 
 bool open_counters() {
-  map_file_of_this_process();
+  map_file_of_this_process(false);
   introduce_this_process();
   pthread_atfork(nullptr, nullptr, start_anew_after_fork);
   return true;
@@ -216,6 +233,10 @@ void count_done(Optimization optimization, std::string_view reason) {
 ProcessCounters& process_counters() {
   static const bool opened = open_counters();
   (void)opened;
+  if (forked.load(std::memory_order_relaxed) && forked.exchange(false)) {
+    map_file_of_this_process(true);
+    introduce_this_process();
+  }
   return counters_in_memory();
 }
 
@@ -244,12 +265,12 @@ void forget_counted_frames() {
 }
 
 std::uint64_t* thread_call_counter() {
-  thread_local std::uint64_t* slot = nullptr;
-  if (slot == nullptr) {
+  if (call_counter == nullptr) {
     ProcessCounters& counters = process_counters();
-    slot = &counters.calls[std::min<std::uint32_t>(counters.threads.fetch_add(1), max_counted_threads - 1)];
+    call_counter =
+        &counters.calls[std::min<std::uint32_t>(counters.threads.fetch_add(1), max_counted_threads - 1)];
   }
-  return slot;
+  return call_counter;
 }
 
 }  // namespace understudy::spu

@@ -167,7 +167,7 @@ struct ProcessCounters {
 
 /// This process's counters: mapped from UNDERSTUDY_RUN_DIR if the launcher has set it, otherwise private
 /// memory. Never fails, and the address stays the same for the life of the process; a forked child has counters
-/// of its own.
+/// of its own, and a file from its first call on.
 ProcessCounters& process_counters();
 
 /// Counts one more volume and returns the place for its figures: an unused one; otherwise that of a volume that

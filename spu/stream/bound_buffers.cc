@@ -5,6 +5,9 @@
 #include <array>
 #include <limits>
 
+#include "spu/state_value.h"
+#include "spu/stream/mapping_calls.h"
+
 namespace understudy::spu {
 namespace {
 
@@ -39,6 +42,12 @@ GLenum binding_of_target(GLenum target) noexcept {
   return found == points.end() ? GLenum(GL_NONE) : found->binding;
 }
 
+GLenum target_of_binding(GLenum binding) noexcept {
+  const auto found = std::find_if(points.begin(), points.end(),
+                                  [&](const BufferPoint& point) { return point.binding == binding; });
+  return found == points.end() ? GLenum(GL_NONE) : found->target;
+}
+
 std::optional<BufferPoint> buffer_point(ExtentRule rule) noexcept {
   switch (rule) {
     case ExtentRule::image:
@@ -63,6 +72,23 @@ std::optional<GLint> asked(const DispatchTable& gl, GLenum name) {
   GLint value = no_answer;
   gl.GetIntegerv(name, &value);
   return value == no_answer ? std::nullopt : std::optional(value);
+}
+
+GLuint buffer_of(const DispatchTable& gl, CallId call, const std::uint64_t* words) {
+  if (is_by_name(call)) return GLuint(words[0]);
+  const GLenum binding = binding_of_target(GLenum(words[0]));
+  return binding == GL_NONE ? 0 : GLuint(state_value(gl, binding));
+}
+
+BufferMapping mapping_of(const DispatchTable& gl, GLuint buffer) {
+  BufferMapping mapping;
+  const auto before = asked(gl, GL_ARRAY_BUFFER_BINDING);
+  if (!before || !gl.IsBuffer(buffer)) return mapping;
+  gl.BindBuffer(GL_ARRAY_BUFFER, buffer);
+  gl.GetBufferPointerv(GL_ARRAY_BUFFER, GL_BUFFER_MAP_POINTER, &mapping.first);
+  gl.GetBufferParameteriv(GL_ARRAY_BUFFER, GL_BUFFER_ACCESS, &mapping.access);
+  gl.BindBuffer(GL_ARRAY_BUFFER, GLuint(*before));
+  return mapping;
 }
 
 std::uint64_t bound_bytes(const DispatchTable& gl, GLenum target) {

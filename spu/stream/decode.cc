@@ -9,13 +9,13 @@
 #include <string_view>
 
 #include "dispatch/call_words.h"
-#include "spu/state_value.h"
 #include "spu/stream/answers.h"
 #include "spu/stream/bound_buffers.h"
 #include "spu/stream/checked_pointers.h"
 #include "spu/stream/decoded_call.h"
 #include "spu/stream/event.h"
 #include "spu/stream/extent.h"
+#include "spu/stream/mapping_calls.h"
 #include "spu/stream/pointer_words.h"
 
 namespace understudy::spu {
@@ -42,21 +42,12 @@ bool is_shared(ObjectKind kind) {
   }
 }
 
-bool is_named(CallId call) {
-  return std::string_view(call_name(call)).find("Named") != std::string_view::npos;
-}
-
-/// The buffer object that a call refers to by its first argument, a target or a name.
-GLuint buffer_of(CallId call, const std::uint64_t* words, const DispatchTable& gl) {
-  return is_named(call) ? GLuint(words[0]) : GLuint(state_value(gl, binding_of_target(GLenum(words[0]))));
-}
-
 /// Size in bytes of the mapping that the call has just created.
 std::size_t mapped_bytes(CallId call, const std::uint64_t* words, const DispatchTable& gl) {
   const std::uint8_t length = argument_named(call_shape(call), "length");
   if (length != no_argument) return words[length];
   GLint64 size = 0;
-  if (is_named(call)) {
+  if (is_by_name(call)) {
     gl.GetNamedBufferParameteri64v(GLuint(words[0]), GL_BUFFER_SIZE, &size);
   } else {
     gl.GetBufferParameteri64v(GLenum(words[0]), GL_BUFFER_SIZE, &size);
@@ -64,18 +55,10 @@ std::size_t mapped_bytes(CallId call, const std::uint64_t* words, const Dispatch
   return std::size_t(std::max<GLint64>(size, 0));
 }
 
-/// Whether the driver still has the mapping, and allows writing to it. A mapping can end in many ways, some of
-/// them in other contexts, so the driver is queried.
+/// Whether the driver still has the mapping, and allows writing to it.
 bool is_mapped(const ObjectNames::Mapping& mapping, const DispatchTable& gl) {
-  const auto before = asked(gl, GL_ARRAY_BUFFER_BINDING);
-  if (!before || !gl.IsBuffer(mapping.buffer)) return false;
-  gl.BindBuffer(GL_ARRAY_BUFFER, mapping.buffer);
-  void* first = nullptr;
-  GLint access = GL_READ_ONLY;
-  gl.GetBufferPointerv(GL_ARRAY_BUFFER, GL_BUFFER_MAP_POINTER, &first);
-  gl.GetBufferParameteriv(GL_ARRAY_BUFFER, GL_BUFFER_ACCESS, &access);
-  gl.BindBuffer(GL_ARRAY_BUFFER, GLuint(*before));
-  return first == mapping.first && access != GL_READ_ONLY;
+  const BufferMapping now = mapping_of(gl, mapping.buffer);
+  return now.first == mapping.first && now.access != GL_READ_ONLY;
 }
 
 /// While in scope, glPixelStore parameters match the layout of images in streams.
@@ -327,27 +310,10 @@ bool Decoder::translate(Call& call) {
 void Decoder::forget_mappings(const Call& call, const DispatchTable& gl) {
   ObjectNames& buffers = names(ObjectKind::buffer);
   if (!buffers.has_mappings()) return;
-  void* pointer = nullptr;
-  switch (call.id) {
-    case CallId::UnmapBuffer:
-    case CallId::UnmapBufferARB:
-    case CallId::BufferData:
-    case CallId::BufferDataARB:
-    case CallId::BufferStorage:
-      gl.GetBufferPointerv(GLenum(call.words[0]), GL_BUFFER_MAP_POINTER, &pointer);
-      buffers.drop_mapping(pointer);
-      break;
-    case CallId::UnmapNamedBuffer:
-    case CallId::UnmapNamedBufferEXT:
-    case CallId::NamedBufferData:
-    case CallId::NamedBufferDataEXT:
-    case CallId::DeleteBuffers:
-    case CallId::DeleteBuffersARB:
-      // Rare, and the name may be unknown: other mappings lose their later writes, but nothing becomes unsafe.
-      buffers.drop_all_mappings();
-      break;
-    default:
-      break;
+  if (deletes_buffers(call.id)) {
+    for (const GLuint buffer : deleted_buffers(call.words.data())) buffers.drop_mapping(buffer);
+  } else if (unmaps_buffer(call.id) || replaces_storage(call.id)) {
+    buffers.drop_mapping(buffer_of(gl, call.id, call.words.data()));
   }
 }
 
@@ -356,7 +322,7 @@ void Decoder::remember_answer(const Call& call, std::uint64_t result, const Disp
   if (is_location_query(call.id)) answer_.program = call.words[0];
   if (maps_a_buffer(call.id) && result != 0)
     answer_.mapped = {reinterpret_cast<std::byte*>(std::uintptr_t(result)),
-                      mapped_bytes(call.id, call.words.data(), gl), buffer_of(call.id, call.words.data(), gl)};
+                      mapped_bytes(call.id, call.words.data(), gl), buffer_of(gl, call.id, call.words.data())};
   const auto parameters = call.shape->parameters();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     if (!answers_names(parameters[p])) continue;

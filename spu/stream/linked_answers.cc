@@ -10,6 +10,7 @@
 #include "spu/stream/decoded_call.h"
 #include "spu/stream/extent.h"
 #include "spu/stream/image_answers.h"
+#include "spu/stream/mapping_calls.h"
 #include "spu/stream/pointer_words.h"
 
 namespace understudy::spu {
@@ -26,7 +27,7 @@ bool contents_matter(CallId call, const std::uint64_t* words) {
 
 /// The contents of the range that the call will map. Empty if the call is going to fail.
 std::vector<std::byte> contents_before(CallId call, const std::uint64_t* words, const DispatchTable& gl) {
-  const bool named = std::string_view(call_name(call)).find("Named") != std::string_view::npos;
+  const bool named = is_by_name(call);
   GLint size = 0;
   GLint mapped = 0;
   if (named) {

@@ -49,17 +49,20 @@ class ObjectNames {
     std::size_t bytes = 0;
     std::uint32_t buffer = 0;  ///< its local name
   };
-  void set_mapping(std::uint64_t there, Mapping mapping) { mappings_[there] = mapping; }
+  /// A buffer has one mapping: an earlier one has ended.
+  void set_mapping(std::uint64_t there, Mapping mapping) {
+    drop_mapping(mapping.buffer);
+    mappings_[there] = mapping;
+  }
   Mapping mapping(std::uint64_t there) const {
     const auto found = mappings_.find(there);
     return found == mappings_.end() ? Mapping{} : found->second;
   }
 
   bool has_mappings() const { return !mappings_.empty(); }
-  void drop_mapping(const void* first) {
-    std::erase_if(mappings_, [&](const auto& entry) { return entry.second.first == first; });
+  void drop_mapping(std::uint32_t buffer) {
+    std::erase_if(mappings_, [&](const auto& entry) { return entry.second.buffer == buffer; });
   }
-  void drop_all_mappings() { mappings_.clear(); }
 
   std::uint64_t current_program = 0;  ///< the local name
 

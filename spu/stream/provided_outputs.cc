@@ -11,6 +11,7 @@
 #include "spu/stream/decode.h"
 #include "spu/stream/decoded_call.h"
 #include "spu/stream/extent.h"
+#include "spu/stream/mapping_calls.h"
 #include "spu/stream/pointer_words.h"
 #include "spu/stream/unknown_answers.h"
 
@@ -30,7 +31,7 @@ bool reads_buffer(CallId call) {
 
 std::size_t bytes_of_buffer(CallId call, const std::uint64_t* words, const DispatchTable& gl) {
   GLint64 bytes = 0;
-  if (std::string_view(call_name(call)).find("Named") == std::string_view::npos) {
+  if (!is_by_name(call)) {
     bytes = GLint64(bound_bytes(gl, GLenum(words[0])));
   } else if (gl.GetNamedBufferParameteri64v != nullptr) {
     gl.GetNamedBufferParameteri64v(GLuint(words[0]), GL_BUFFER_SIZE, &bytes);

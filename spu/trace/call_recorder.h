@@ -18,7 +18,7 @@ class CallRecorder {
 
   /// Must be called before the call is made.
   void before(CallId call, const std::uint64_t* words, Records& to) {
-    mapped_.before(driver_, call, words, to);
+    if (!inside_begin()) mapped_.before(driver_, call, words, to);
     encoder_.encode(call, words, to);
   }
   /// Whether the call's answer belongs in the stream.
@@ -34,7 +34,7 @@ class CallRecorder {
  private:
   const DispatchTable& driver_;
   Encoder encoder_;
-  MappedBuffers mapped_;
+  MappedBuffers mapped_{MappedMemory::of_driver};
 };
 
 }  // namespace understudy::spu

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Viewers with remote OpenGL that show what they draw without a swap, write text with the X server's fonts, or
-// call unsupported functions.
+// Viewers with remote OpenGL that show what they draw without a swap, write text with the X server's fonts, use
+// both window systems, or call unsupported functions.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -128,6 +128,11 @@ TEST_F(RemoteFront, ASpaceMovesOn) {
   Child child(command_of(remotely() + Words{WRITES_TEXT, "fixed", "32", "1"}, on_display()), file(""));
   EXPECT_TRUE(comes_true([&] { return !child.running() || child.out().find("drawn") != std::string::npos; }));
   EXPECT_NE(child.out().find("moves by 6.00"), std::string::npos) << child.out() << child.err();
+}
+
+TEST_F(RemoteFront, GlxAndEglAnswerEachForItself) {
+  const Outcome outcome = run_well(remotely() + Words{MIXES_GLX_AND_EGL}, on_display());
+  EXPECT_EQ(outcome.out, "all right\n") << outcome.err;
 }
 
 TEST_F(RemoteFront, WhatIsLeftOutIsSaidOnceAndDoesNoHarm) {

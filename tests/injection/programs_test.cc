@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Programs that use EGL's OpenGL in unusual ways.
-#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <limits>
@@ -50,10 +49,8 @@ TEST_P(Programs, ForkBeforeAContextExists) {
 TEST_P(Programs, ForkWithAContextAndTheChildOnlyLeaves) {
   for (const char* scene : {"child_only_exits", "child_leaves_at_once"}) {
     const CountedRun run = expect_same({client("forks"), scene});
-    ASSERT_EQ(run.processes.size(), 2U);
-    EXPECT_GT(std::max(run.processes[0].calls, run.processes[1].calls), 100U);
-    EXPECT_EQ(std::min(run.processes[0].calls, run.processes[1].calls), 0U)
-        << "none of the parent's are the child's";
+    ASSERT_EQ(run.processes.size(), 1U) << "a child that counts nothing leaves no file";
+    EXPECT_GT(run.processes[0].calls, 100U);
   }
 }
 

@@ -167,6 +167,18 @@ TEST(LifeCycle, SwitchedOffTheCoreIsNeverOpenedAndNothingIsSaid) {
               ElementsAreArray(frame_without_core));
 }
 
+// As for every switch (spu/options.cc).
+TEST(LifeCycle, TheVariableSwitchesOffOnlyWhereItsValueSaysSo) {
+  for (const std::string yes : {"1", "on", "yes", "true"}) {
+    EXPECT_THAT(play("glx_client", "one_frame", {"UNDERSTUDY_DISABLE=" + yes}).lines(),
+                ElementsAreArray(frame_without_core))
+        << yes;
+  }
+  for (const std::string no : {"", "0", "off", "no", "false"}) {
+    EXPECT_TRUE(play("glx_client", "one_frame", {"UNDERSTUDY_DISABLE=" + no}).says("core: open")) << no;
+  }
+}
+
 TEST(LifeCycle, AMissingCoreIsSaidOnceAndTheApplicationDraws) {
   const Outcome outcome = play("glx_client", "one_frame", {}, TEST_STAGE "/bodiless");
   EXPECT_EQ(outcome.status, 0);
@@ -222,6 +234,29 @@ TEST(LifeCycle, EglsFrame) {
                   "driver: destroy 1", "core: destroyed 1"));
 }
 
+/// The lines of an EGL program whose calls, with a context, all end a frame in the same way.
+std::vector<std::string> egl_with_frame_ends(const std::string& end, const std::vector<std::string>& calls) {
+  std::vector<std::string> lines{"driver: eglGetDisplay", "driver: create 1 share 0",
+                                 "driver: current 1 drawable 20", "core: open",
+                                 "core: current 1 share 0 egl desktop drawable 20"};
+  for (const std::string& call : calls)
+    lines.insert(lines.end(), {"core: before " + end, "driver: " + call, "core: after " + end});
+  return lines;
+}
+
+TEST(LifeCycle, EglsFencesAndImagesHoldWhatWasDrawnBefore) {
+  EXPECT_THAT(play("egl_client", "published").lines(),
+              ElementsAreArray(egl_with_frame_ends(
+                  "wait", {"create sync", "client waits", "server waits", "create image",  // of EGL 1.5
+                           "create sync", "create sync", "client waits", "server waits", "create image"})));
+}
+
+TEST(LifeCycle, EglsSwapsOfPartsEndFrames) {
+  EXPECT_THAT(play("egl_client", "swapped_in_part").lines(),
+              ElementsAreArray(
+                  egl_with_frame_ends("swap", {"swap region of 20", "swap region of 20", "post part of 20"})));
+}
+
 TEST(LifeCycle, AnOpenGlEsContextIsAnnouncedAsSuch) {
   EXPECT_THAT(play("egl_client", "opengl_es").lines(),
               ElementsAre("driver: eglGetDisplay", "driver: create 1 share 0", "driver: current 1 drawable 20",
@@ -267,6 +302,30 @@ TEST(LifeCycle, OsMesasContextsShare) {
                           "core: current 2 share 1 osmesa desktop drawable",  //
                           "driver: OSMesa destroy 1", "core: destroyed 1",    //
                           "core: glClear", "driver: OSMesa's glClear", "app: glClear ours, glAccum null"));
+}
+
+// OSMesa frees a context at once, even if it is current.
+TEST(LifeCycle, AnOsMesaContextDestroyedWhileCurrentIsReleased) {
+  EXPECT_THAT(play("osmesa_client", "destroyed_while_current").lines(),
+              ElementsAre("driver: OSMesa create 1 share 0", "driver: OSMesa current 1 of 2 x 2", "core: open",
+                          "core: current 1 share 0 osmesa desktop drawable",  //
+                          "core: glClear", "driver: OSMesa's glClear",        //
+                          "core: before finish", "core: after finish", "core: before make_current",
+                          "core: leaving after 1 calls", "driver: OSMesa destroy 1", "core: destroyed 1",
+                          "driver: OSMesa create 1 share 0", "driver: OSMesa current 1 of 2 x 2",
+                          "core: current 2 share 0 osmesa desktop drawable",  // not the dead one's chain
+                          "core: glClear", "driver: OSMesa's glClear",        //
+                          "core: before finish", "core: before make_current", "core: leaving after 1 calls",
+                          "driver: OSMesa destroy 1", "core: destroyed 2",  //
+                          "driver: OSMesa's glClear"));
+}
+
+TEST(LifeCycle, AddressesOfOsMesasBuffersAreGivenWithoutGlCalls) {
+  EXPECT_THAT(play("osmesa_client", "buffers").lines(),
+              ElementsAre("driver: OSMesa create 1 share 0", "driver: OSMesa current 1 of 2 x 2", "core: open",
+                          "core: current 1 share 0 osmesa desktop drawable",     //
+                          "core: before finish", "driver: OSMesa colours of 1",  //
+                          "core: before finish", "driver: OSMesa depth of 1"));
 }
 
 // With all argument registers, and with arguments on the stack.

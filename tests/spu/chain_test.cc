@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "dispatch/call_id.h"
+#include "spu/lost_context.h"
 #include "spu/pass/pass.h"
 #include "spu/registry/assemble.h"
 #include "spu/track/calls.h"
@@ -185,6 +186,31 @@ TEST_F(ChainTest, WithoutADriverTheContextIsLost) {
   EXPECT_EQ(installed().CreateShader(GL_VERTEX_SHADER), 0U);
   EXPECT_THAT(mock_.called(), ElementsAre(CallId::Flush));
   Chain::release_current();
+}
+
+TEST(LostContext, AnswersWhatApplicationsPollFor) {
+  const DispatchTable& gl = lost_context();
+  GLuint available = 0;
+  gl.GetQueryObjectuiv(1, GL_QUERY_RESULT_AVAILABLE, &available);
+  EXPECT_EQ(available, GLuint(GL_TRUE));
+  std::array<GLuint64, 2> available64{0, 7};
+  gl.GetQueryObjectui64v(1, GL_QUERY_RESULT_AVAILABLE, available64.data());
+  EXPECT_EQ(available64, (std::array<GLuint64, 2>{GL_TRUE, 7}));
+  gl.GetQueryObjectuiv(1, GL_QUERY_RESULT_AVAILABLE, reinterpret_cast<GLuint*>(8));  // in a query buffer
+  GLuint result = 7;
+  gl.GetQueryObjectuiv(1, GL_QUERY_RESULT, &result);
+  EXPECT_EQ(result, 7U) << "there is none";
+  EXPECT_EQ(gl.ClientWaitSync(nullptr, 0, 0), GLenum(GL_ALREADY_SIGNALED));
+  GLsizei length = 0;
+  GLint status = 0;
+  gl.GetSynciv(nullptr, GL_SYNC_STATUS, 1, &length, &status);
+  EXPECT_EQ(length, 1);
+  EXPECT_EQ(status, GL_SIGNALED);
+  gl.GetSynciv(nullptr, GL_SYNC_STATUS, 1, nullptr, &status);
+  GLint complete = 0;
+  gl.GetProgramiv(1, GL_COMPLETION_STATUS_KHR, &complete);
+  EXPECT_EQ(complete, GL_TRUE);
+  EXPECT_EQ(gl.GetGraphicsResetStatusARB(), GLenum(GL_UNKNOWN_CONTEXT_RESET));
 }
 
 TEST_F(ChainTest, ASlotThatNobodyOverridesIsTheDriversPointer) {

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volume counters of a process that has had more volumes than counter slots.
+// Volume counters of a process that has had more volumes than counter slots, and counters of forked children.
 #include "spu/report/counters.h"
 
 #include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <iterator>
+#include <numeric>
 #include <string>
 #include <vector>
+
+#include "spu/report/report.h"
 
 namespace understudy::spu {
 namespace {
@@ -54,6 +62,39 @@ TEST(VolumesPlaces, OfMoreVolumesThanThereArePlacesAreShared) {
   EXPECT_EQ(reasons_counted(), runs_left());
   for (VolumeCounters* volume : living) leave_behind(*volume);
   EXPECT_NE(&count_volume(1), &last) << "there are places again";
+}
+
+TEST(CountersOfAForkedChild, HaveAFileOnlyIfTheyAreUsed) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(::testing::TempDir()) / ("counters-of-children-" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  std::uint64_t* const calls = thread_call_counter();
+  const auto in_child = [&](auto work) {
+    const pid_t child = fork();
+    if (child == 0) {
+      setenv("UNDERSTUDY_RUN_DIR", folder.c_str(), 1);
+      work();
+      _exit(0);
+    }
+    int status = 0;
+    EXPECT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+  };
+  in_child([] {});
+  EXPECT_TRUE(fs::is_empty(folder));
+  in_child([&] {
+    *calls += 3;  // a thread keeps this pointer
+    count_frame({.time_ms = 1, .error_rms = -1});
+  });
+  in_child([] { *thread_call_counter() += 1; });
+  const auto found = read_counters(folder);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0]->frames + found[1]->frames, 1U);
+  std::uint64_t calls_in_all = 0;
+  for (const MappedCounters& counters : found)
+    calls_in_all += std::accumulate(std::begin(counters->calls), std::end(counters->calls), std::uint64_t(0));
+  EXPECT_EQ(calls_in_all, 4U);
+  fs::remove_all(folder);
 }
 
 }  // namespace

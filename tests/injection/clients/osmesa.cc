@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // osmesa FILE: draws images and then a volume through OSMesa, with which it is linked. Writes the last image of
-// the volume to FILE; with a second argument `depth` it also prints the depth buffer's bytes.
+// the volume to FILE; with a second argument `depth` it also prints the depth buffer's bytes, and with
+// `depth_of_second` it draws every image twice before it finishes it.
+#define GL_GLEXT_PROTOTYPES
 #include <GL/osmesa.h>
 #include <string.h>
 
@@ -17,6 +19,18 @@ static void current(OSMesaContext context) {
 
 static void show_array(const char* name) {
   printf("%s: %016lx error %x\n", name, digest(array), glGetError());
+}
+
+/// A framebuffer that could not be read makes no difference to the array's address.
+static void ask_for_array(OSMesaContext context) {
+  GLuint incomplete = 0;
+  glGenFramebuffers(1, &incomplete);
+  glBindFramebuffer(GL_FRAMEBUFFER, incomplete);
+  GLint width = 0, height = 0, format = 0;
+  void* address = nullptr;
+  OSMesaGetColorBuffer(context, &width, &height, &format, &address);
+  printf("%dx%d, ours %d, error %x\n", width, height, address == array.data(), glGetError());
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 int main(int count, char** arguments) {
@@ -51,15 +65,18 @@ int main(int count, char** arguments) {
   OSMesaDestroyContext(second);
   current(first);
   show("read back", 9);
+  ask_for_array(first);
   if (count < 2) return 0;
 
   const GLuint ball = ball_texture();
-  const bool with_depth = count > 2 && strcmp(arguments[2], "depth") == 0;
+  const bool with_depth = count > 2;
+  const bool twice = with_depth && strcmp(arguments[2], "depth_of_second") == 0;
   for (int frame = 0; frame < 4; ++frame) {
     if (with_depth) {
       glEnable(GL_DEPTH_TEST);
       glDepthFunc(GL_LEQUAL);
     }
+    if (twice) draw_volume(ball, 45);
     draw_volume(ball, 10 * frame);
     glFlush();
     glFinish();

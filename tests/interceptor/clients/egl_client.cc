@@ -21,18 +21,44 @@ bool current(EGLContext context, EGLSurface draw) {
   return eglMakeCurrent(display, draw, draw, context) == EGL_TRUE;
 }
 
+template <class Function>
+Function function(const char* name) {
+  return reinterpret_cast<Function>(eglGetProcAddress(name));
+}
+
 void one_frame() {
   EGLContext context = create(EGL_OPENGL_API);
   current(context, surface);
   glClear(0);
   eglSwapBuffers(display, surface);
-  const auto swap =
-      reinterpret_cast<PFNEGLSWAPBUFFERSWITHDAMAGEKHRPROC>(eglGetProcAddress("eglSwapBuffersWithDamageKHR"));
-  swap(display, surface, nullptr, 0);
+  function<PFNEGLSWAPBUFFERSWITHDAMAGEKHRPROC>("eglSwapBuffersWithDamageKHR")(display, surface, nullptr, 0);
   if (current(context, reinterpret_cast<EGLSurface>(bad_drawable))) say("app: should have failed\n");
   glClear(0);
   eglReleaseThread();
   eglDestroyContext(display, context);
+}
+
+/// Fences and images, by EGL 1.5 and by its extensions.
+void published() {
+  EGLContext context = create(EGL_OPENGL_API);
+  current(context, surface);
+  EGLSync sync = eglCreateSync(display, EGL_SYNC_FENCE, nullptr);
+  eglClientWaitSync(display, sync, 0, 0);
+  eglWaitSync(display, sync, 0);
+  eglCreateImage(display, context, EGL_GL_TEXTURE_2D, nullptr, nullptr);
+  function<PFNEGLCREATESYNCKHRPROC>("eglCreateSyncKHR")(display, EGL_SYNC_FENCE_KHR, nullptr);
+  function<PFNEGLCREATESYNC64KHRPROC>("eglCreateSync64KHR")(display, EGL_SYNC_FENCE_KHR, nullptr);
+  function<PFNEGLCLIENTWAITSYNCKHRPROC>("eglClientWaitSyncKHR")(display, sync, 0, 0);
+  function<PFNEGLWAITSYNCKHRPROC>("eglWaitSyncKHR")(display, sync, 0);
+  function<PFNEGLCREATEIMAGEKHRPROC>("eglCreateImageKHR")(display, context, EGL_GL_TEXTURE_2D, nullptr,
+                                                          nullptr);
+}
+
+void swapped_in_part() {
+  current(create(EGL_OPENGL_API), surface);
+  function<PFNEGLSWAPBUFFERSREGIONNOKPROC>("eglSwapBuffersRegionNOK")(display, surface, 0, nullptr);
+  function<PFNEGLSWAPBUFFERSREGION2NOKPROC>("eglSwapBuffersRegion2NOK")(display, surface, 0, nullptr);
+  function<PFNEGLPOSTSUBBUFFERNVPROC>("eglPostSubBufferNV")(display, surface, 0, 0, 1, 1);
 }
 
 void opengl_es() {
@@ -68,7 +94,8 @@ struct Scene {
   void (*play)();
 };
 constexpr Scene scenes[] = {
-    {"one_frame", one_frame}, {"opengl_es", opengl_es}, {"terminated", terminated}, {"libraries", libraries}};
+    {"one_frame", one_frame}, {"published", published},   {"swapped_in_part", swapped_in_part},
+    {"opengl_es", opengl_es}, {"terminated", terminated}, {"libraries", libraries}};
 
 }  // namespace
 

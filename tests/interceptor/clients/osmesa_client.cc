@@ -43,11 +43,36 @@ void share_group() {
       OSMesaGetProcAddress("glAccum") == nullptr ? "null" : "not null");
 }
 
+/// OSMesa frees a current context at once; the next one gets its address.
+void destroyed_while_current() {
+  for (int time = 0; time < 2; ++time) {
+    OSMesaContext context = OSMesaCreateContext(OSMESA_RGBA, nullptr);
+    current(context);
+    glClear(0);
+    OSMesaDestroyContext(context);
+  }
+  glClear(0);
+}
+
+void buffers() {
+  OSMesaContext context = OSMesaCreateContext(OSMESA_RGBA, nullptr);
+  current(context);
+  GLint width = 0;
+  GLint height = 0;
+  GLint format = 0;
+  void* buffer = nullptr;
+  OSMesaGetColorBuffer(context, &width, &height, &format, &buffer);
+  OSMesaGetDepthBuffer(context, &width, &height, &format, &buffer);
+}
+
 struct Scene {
   const char* name;
   void (*play)();
 };
-constexpr Scene scenes[] = {{"frames", frames}, {"share_group", share_group}};
+constexpr Scene scenes[] = {{"frames", frames},
+                            {"share_group", share_group},
+                            {"destroyed_while_current", destroyed_while_current},
+                            {"buffers", buffers}};
 
 }  // namespace
 

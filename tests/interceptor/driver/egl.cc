@@ -2,6 +2,8 @@
 // libEGL.so.1 of the test driver.
 #include <string.h>
 
+#include <initializer_list>
+
 #include "driver.h"
 
 constexpr unsigned opengl_es_api = 0x30A0;
@@ -54,6 +56,22 @@ DRIVER_FUNCTION unsigned eglTerminate(void*) {
   say("driver: terminate\n");
   return 1;
 }
+DRIVER_FUNCTION long eglCreateSync(void*, unsigned, const long*) {
+  say("driver: create sync\n");
+  return 1;
+}
+DRIVER_FUNCTION int eglClientWaitSync(void*, long, int, unsigned long) {
+  say("driver: client waits\n");
+  return 1;
+}
+DRIVER_FUNCTION unsigned eglWaitSync(void*, long, long) {
+  say("driver: server waits\n");
+  return 1;
+}
+DRIVER_FUNCTION long eglCreateImage(void*, long, unsigned, long, const long*) {
+  say("driver: create image\n");
+  return 1;
+}
 DRIVER_FUNCTION unsigned eglSwapBuffers(void*, long surface) {
   say("driver: swap %ld\n", surface);
   return 1;
@@ -63,6 +81,14 @@ static unsigned swap_with_damage(void*, long surface, const int*, int) {
   say("driver: swap %ld with damage\n", surface);
   return 1;
 }
+static unsigned swap_region(void*, long surface, int, const int*) {
+  say("driver: swap region of %ld\n", surface);
+  return 1;
+}
+static unsigned post_sub_buffer(void*, long surface, int, int, int, int) {
+  say("driver: post part of %ld\n", surface);
+  return 1;
+}
 static void clear(unsigned) {
   say("driver: glClear\n");
 }
@@ -70,5 +96,14 @@ static void clear(unsigned) {
 DRIVER_FUNCTION void* eglGetProcAddress(const char* name) {
   if (strcmp(name, "glClear") == 0) return reinterpret_cast<void*>(&clear);
   if (strcmp(name, "eglSwapBuffersWithDamageKHR") == 0) return reinterpret_cast<void*>(&swap_with_damage);
+  for (const char* region : {"eglSwapBuffersRegionNOK", "eglSwapBuffersRegion2NOK"})
+    if (strcmp(name, region) == 0) return reinterpret_cast<void*>(&swap_region);
+  if (strcmp(name, "eglPostSubBufferNV") == 0) return reinterpret_cast<void*>(&post_sub_buffer);
+  // The extensions' parameters have other types, whose values this driver does not read.
+  for (const char* create : {"eglCreateSyncKHR", "eglCreateSync64KHR"})
+    if (strcmp(name, create) == 0) return reinterpret_cast<void*>(&eglCreateSync);
+  if (strcmp(name, "eglClientWaitSyncKHR") == 0) return reinterpret_cast<void*>(&eglClientWaitSync);
+  if (strcmp(name, "eglWaitSyncKHR") == 0) return reinterpret_cast<void*>(&eglWaitSync);
+  if (strcmp(name, "eglCreateImageKHR") == 0) return reinterpret_cast<void*>(&eglCreateImage);
   return nullptr;
 }

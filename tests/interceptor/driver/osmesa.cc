@@ -22,6 +22,17 @@ DRIVER_FUNCTION unsigned char OSMesaMakeCurrent(long handle, void*, unsigned, in
 DRIVER_FUNCTION long OSMesaGetCurrentContext() {
   return 0;
 }
+DRIVER_FUNCTION unsigned char OSMesaGetColorBuffer(long handle, int*, int*, int*, void**) {
+  say("driver: OSMesa colours of %ld\n", handle);
+  return 1;
+}
+DRIVER_FUNCTION unsigned char OSMesaGetDepthBuffer(long handle, int*, int*, int*, void**) {
+  say("driver: OSMesa depth of %ld\n", handle);
+  return 1;
+}
+DRIVER_FUNCTION void glReadPixels(int, int, int, int, unsigned, unsigned, void*) {
+  say("driver: OSMesa's glReadPixels\n");
+}
 DRIVER_FUNCTION void glClear(unsigned) {
   say("driver: OSMesa's glClear\n");
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <numeric>
@@ -220,6 +221,126 @@ TEST_F(RemoteUnitTest, MemoryOfMappedBuffersIsTheApplications) {
   EXPECT_EQ(gl().GetError(), GLenum(GL_INVALID_ENUM));
 }
 
+/// Mapped persistently, as far as the GL server's OpenGL supports that.
+std::uint8_t* map_persistently(const DispatchTable& gl, GLenum target, GLsizeiptr bytes, GLbitfield access) {
+  access |= GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+  gl.BufferStorage(target, bytes, nullptr, access);
+  return static_cast<std::uint8_t*>(gl.MapBufferRange(target, 0, bytes, access));
+}
+
+TEST_F(RemoteUnitTest, MappingsEndWithTheStorageOfTheirBuffer) {
+  make_context();
+  std::array<GLuint, 2> buffers{};
+  gl().GenBuffers(2, buffers.data());
+  // Freed at once if it were the application's, so that a read crashes.
+  constexpr GLsizeiptr much = GLsizeiptr(4) << 20;
+  for (const GLuint buffer : buffers) {
+    gl().BindBuffer(GL_ARRAY_BUFFER, buffer);
+    std::uint8_t* const mapped = map_persistently(gl(), GL_ARRAY_BUFFER, much, GL_MAP_WRITE_BIT);
+    if (mapped == nullptr) GTEST_SKIP() << "no persistent mappings";
+    mapped[5] = 1;
+  }
+  gl().DeleteBuffers(1, buffers.data());
+  gl().DrawArrays(GL_POINTS, 0, 0);
+  void* mapped = nullptr;
+  gl().GetBufferPointerv(GL_ARRAY_BUFFER, GL_BUFFER_MAP_POINTER, &mapped);
+  static_cast<std::uint8_t*>(mapped)[6] = 2;
+  gl().DrawArrays(GL_POINTS, 0, 0);
+  std::array<std::uint8_t, 2> read{};
+  gl().GetBufferSubData(GL_ARRAY_BUFFER, 5, 2, read.data());
+  EXPECT_EQ(read, (std::array<std::uint8_t, 2>{1, 2})) << "the other buffer is still mapped";
+
+  GLuint orphan = 0;
+  gl().GenBuffers(1, &orphan);
+  gl().BindBuffer(GL_ARRAY_BUFFER, orphan);
+  gl().BufferData(GL_ARRAY_BUFFER, much, nullptr, GL_STREAM_DRAW);
+  EXPECT_NE(gl().MapBuffer(GL_ARRAY_BUFFER, GL_WRITE_ONLY), nullptr);
+  gl().BufferData(GL_ARRAY_BUFFER, 16, nullptr, GL_STREAM_DRAW);
+  auto* few = static_cast<std::uint8_t*>(gl().MapBuffer(GL_ARRAY_BUFFER, GL_WRITE_ONLY));
+  ASSERT_NE(few, nullptr);
+  std::fill_n(few, 16, std::uint8_t(7));
+  EXPECT_TRUE(gl().UnmapBuffer(GL_ARRAY_BUFFER));
+  gl().GetBufferSubData(GL_ARRAY_BUFFER, 14, 2, read.data());
+  EXPECT_EQ(read, (std::array<std::uint8_t, 2>{7, 7}));
+}
+
+TEST_F(RemoteUnitTest, PersistentMappingsShowWhatOpenGLHasWritten) {
+  make_context();
+  GLuint buffer = 0;
+  gl().GenBuffers(1, &buffer);
+  gl().BindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
+  const std::uint8_t* const mapped =
+      map_persistently(gl(), GL_PIXEL_PACK_BUFFER, 64, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
+  if (mapped == nullptr) GTEST_SKIP() << "no persistent mappings";
+  const auto read_green = [&](GLfloat green) {
+    gl().ClearColor(0, green, 0, 1);
+    gl().Clear(GL_COLOR_BUFFER_BIT);
+    gl().ReadPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  };
+  read_green(1);
+  gl().Finish();
+  EXPECT_EQ(mapped[1], 255);
+  read_green(0);
+  const GLsync fence = gl().FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  EXPECT_NE(gl().ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 1'000'000'000), GLenum(GL_TIMEOUT_EXPIRED));
+  EXPECT_EQ(mapped[1], 0);
+  read_green(1);
+  const GLsync polled = gl().FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  GLint status = GL_UNSIGNALED;
+  while (status != GL_SIGNALED) gl().GetSynciv(polled, GL_SYNC_STATUS, 1, nullptr, &status);
+  EXPECT_EQ(mapped[1], 255);
+  gl().DeleteSync(fence);
+  gl().DeleteSync(polled);
+}
+
+TEST_F(RemoteUnitTest, WritesIntoAPersistentMappingOutlastItsRefreshing) {
+  make_context();
+  GLuint buffer = 0;
+  gl().GenBuffers(1, &buffer);
+  gl().BindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
+  std::uint8_t* const mapped =
+      map_persistently(gl(), GL_PIXEL_PACK_BUFFER, 64, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
+  if (mapped == nullptr) GTEST_SKIP() << "no persistent mappings";
+  const GLsync fence = gl().FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  mapped[20] = 9;
+  gl().ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 1'000'000'000);
+  EXPECT_EQ(mapped[20], 9);
+  std::uint8_t read = 0;
+  gl().GetBufferSubData(GL_PIXEL_PACK_BUFFER, 20, 1, &read);
+  EXPECT_EQ(read, 9);
+  gl().DeleteSync(fence);
+}
+
+TEST_F(RemoteUnitTest, ArraysOfEveryCommandTravelWithTheDraw) {
+  make_context();
+  const std::array<float, 8> corners = {-1, -1, 1, -1, 1, 1, -1, 1};
+  const std::array<float, 20> interleaved = {0, 0, 1, -1, -1, 0, 0, 1, 1, -1, 0, 0, 1, 1, 1, 0, 0, 1, -1, 1};
+  const std::array<float, 12> green = {0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0};
+  const auto pixel_after_draw = [&] {
+    gl().Clear(GL_COLOR_BUFFER_BIT);
+    gl().DrawArrays(GL_QUADS, 0, 4);
+    std::array<std::uint8_t, 3> pixel{};
+    gl().PixelStorei(GL_PACK_ALIGNMENT, 1);
+    gl().ReadPixels(30, 20, 1, 1, GL_RGB, GL_UNSIGNED_BYTE, pixel.data());
+    return pixel;
+  };
+  gl().Color3f(1, 0, 0);
+  gl().InterleavedArrays(GL_V2F, 0, corners.data());
+  EXPECT_EQ(pixel_after_draw(), (std::array<std::uint8_t, 3>{255, 0, 0}));
+  gl().InterleavedArrays(GL_C3F_V3F, 0, interleaved.data());
+  gl().VertexPointerEXT(2, GL_FLOAT, 20, 4, &interleaved[3]);
+  gl().ColorPointerEXT(3, GL_FLOAT, 20, 4, interleaved.data());
+  EXPECT_EQ(pixel_after_draw(), (std::array<std::uint8_t, 3>{0, 0, 255}));
+  gl().PushClientAttribDefaultEXT(GL_CLIENT_VERTEX_ARRAY_BIT);
+  gl().EnableClientState(GL_VERTEX_ARRAY);
+  gl().VertexPointer(2, GL_FLOAT, 0, corners.data());
+  gl().Color3f(1, 1, 0);
+  EXPECT_EQ(pixel_after_draw(), (std::array<std::uint8_t, 3>{255, 255, 0}));
+  gl().PopClientAttrib();
+  gl().ColorPointerEXT(3, GL_FLOAT, 0, 4, green.data());
+  EXPECT_EQ(pixel_after_draw(), (std::array<std::uint8_t, 3>{0, 255, 0}));
+}
+
 TEST_F(RemoteUnitTest, ArraysInTheApplicationsMemoryTravelWithTheDraw) {
   make_context();
   gl().ClearColor(0, 0, 0, 1);
@@ -339,6 +460,12 @@ TEST_F(RemoteUnitTest, AGlServerThatEndsIsNoticed) {
   EXPECT_EQ(gl().GetString(GL_VENDOR), nullptr);
   EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
   EXPECT_NE(said.find("the GL server, which draws for this program"), std::string::npos) << said;
+  GLuint available = GL_FALSE;
+  gl().GetQueryObjectuiv(1, GL_QUERY_RESULT_AVAILABLE, &available);
+  EXPECT_EQ(available, GLuint(GL_TRUE)) << "or the application polls forever";
+  EXPECT_EQ(gl().ClientWaitSync(nullptr, 0, 0), GLenum(GL_ALREADY_SIGNALED));
+  EXPECT_EQ(gl().GetGraphicsResetStatusARB(), GLenum(GL_UNKNOWN_CONTEXT_RESET));
+  EXPECT_EQ(gl().GetError(), GLenum(GL_NO_ERROR));
 }
 
 }  // namespace

@@ -210,6 +210,35 @@ TEST_P(Pointers, WhatIsMappedNoMoreIsNotWrittenTo) {
   EXPECT_EQ(write(), "");
 }
 
+TEST_P(Pointers, AMappingOutlastsOtherBuffers) {
+  bind(GL_COPY_READ_BUFFER, 6, 64);
+  bind(GL_ARRAY_BUFFER, 5, 64);
+  make(CallId::MapBuffer, {GL_ARRAY_BUFFER, GL_WRITE_ONLY});
+  Records records;
+  const std::array<std::uint64_t, 2> answer = {stable_id(CallId::MapBuffer), 0x1000};
+  records.append_plain(event::answers, answer);
+  const std::array<GLuint, 1> others = {6};
+  records.append_plain(stable_id(CallId::DeleteBuffers), {{1, 0}});
+  records.set(2, records.attach(std::as_bytes(std::span(others))).word());
+  const std::array<std::byte, 1> data = {std::byte(9)};
+  records.append_plain(event::mapped_write, {{0x1000, 3, 0}});
+  records.set(3, records.attach(data).word());
+  EXPECT_EQ(play(records), "");
+  void* mapped = nullptr;
+  driver.table().GetBufferPointerv(GL_ARRAY_BUFFER, GL_BUFFER_MAP_POINTER, &mapped);
+  ASSERT_NE(mapped, nullptr);
+  EXPECT_EQ(static_cast<const std::byte*>(mapped)[3], std::byte(9));
+}
+
+TEST(MappingNames, AreThoseOfOneMappingOfABuffer) {
+  ObjectNames names;
+  std::array<std::byte, 64> memory{};
+  names.set_mapping(0x1000, {memory.data(), 64, 5});
+  names.set_mapping(0x2000, {memory.data(), 16, 5});
+  EXPECT_EQ(names.mapping(0x1000).first, nullptr) << "its size was another";
+  EXPECT_EQ(names.mapping(0x2000).bytes, 16U);
+}
+
 TEST_P(Pointers, FeedbackGoesToMemoryOfOurs) {
   for (int i = 0; i < 20; ++i)
     EXPECT_EQ(make(CallId::FeedbackBuffer, {1000, GL_2D, Reference{ReferenceKind::output, evil}.word()}), "");

@@ -14,9 +14,9 @@ namespace adversary {
   X(ActiveTexture) X(AlphaFunc) X(AttachShader) X(Begin) X(BeginConditionalRender) X(BeginQuery) \
   X(BeginTransformFeedback) X(BindAttribLocation) X(BindBuffer) X(BindBufferBase) X(BindFragDataLocation) \
   X(BindFramebuffer) X(BindImageTexture) X(BindProgramARB) X(BindProgramPipeline) X(BindRenderbuffer) X(BindSampler) \
-  X(BindTexture) X(BindVertexArray) X(BlendColor) X(BlendEquation) X(BlendFunc) X(BlendFuncSeparate) \
-  X(BlitFramebuffer) X(BufferData) X(BufferStorage) X(BufferSubData) X(CallList) X(CheckFramebufferStatus) X(Clear) \
-  X(ClearBufferuiv) X(ClearBufferfv) X(ClearColor) X(ClearStencil) X(ClearTexSubImage) X(ClientActiveTexture) X(ClipPlane) X(Color3f) X(Color4f) X(ColorMask) \
+  X(BindTexture) X(BindVertexArray) X(BlendColor) X(BlendEquation) X(BlendEquationi) X(BlendFunc) X(BlendFunci) X(BlendFuncSeparate) \
+  X(BlitFramebuffer) X(BufferData) X(BufferStorage) X(BufferSubData) X(CallList) X(CheckFramebufferStatus) X(ClampColor) X(Clear) \
+  X(ClearBufferuiv) X(ClearBufferfv) X(ClearColor) X(ClearStencil) X(ClearTexSubImage) X(ClientActiveTexture) X(ClipPlane) X(Color3f) X(Color4f) X(ColorMask) X(ColorMaski) \
   X(CompileShader) X(CopyImageSubData) X(CopyTexSubImage2D) X(CopyTexSubImage3D) X(CreateProgram) X(CreateShader) \
   X(CreateShaderProgramv) X(CullFace) X(DeleteLists) X(DeleteShader) X(DetachShader) X(DeleteTextures) X(DepthFunc) X(DepthMask) X(Disable) \
   X(DisableVertexAttribArray) X(DispatchCompute) X(DrawArrays) X(DrawArraysInstanced) X(DrawBuffers) \
@@ -26,15 +26,15 @@ namespace adversary {
   X(GenProgramPipelines) X(GenProgramsARB) X(GenQueries) X(GenRenderbuffers) X(GenSamplers) X(GenTextures) \
   X(GenVertexArrays) X(GenerateMipmap) X(GetBufferSubData) X(GetError) X(GetIntegerv) X(GetProgramBinary) X(GetProgramInfoLog) X(ProgramBinary) \
   X(GetProgramiv) X(GetQueryObjectuiv) X(GetShaderInfoLog) X(GetShaderiv) X(GetString) X(GetSubroutineIndex) \
-  X(GetTexImage) X(GetUniformBlockIndex) X(GetUniformLocation) X(LinkProgram) X(LoadMatrixf) X(MapBufferRange) X(MatrixMode) \
-  X(MemoryBarrier) X(NewList) X(PixelStorei) X(PointSize) X(PolygonMode) X(ProgramParameteri) X(ProgramStringARB) \
+  X(GetTexImage) X(GetUniformBlockIndex) X(GetUniformLocation) X(Lightfv) X(LinkProgram) X(LoadMatrixf) X(MapBufferRange) X(Materialfv) X(MatrixMode) \
+  X(MemoryBarrier) X(NewList) X(PixelStorei) X(PixelTransferf) X(PointSize) X(PolygonMode) X(ProgramParameteri) X(ProgramStringARB) \
   X(ProgramUniform1f) X(ProgramUniform1i) X(ProgramUniformMatrix4fv) X(ReadBuffer) X(ReadPixels) \
   X(RenderbufferStorage) X(RenderbufferStorageMultisample) X(SamplerParameteri) X(Scissor) X(ShaderSource) \
-  X(StencilFunc) X(StencilOp) X(TexBuffer) X(TexCoord2f) X(TexCoord3f) X(TexCoord3fv) X(TexEnvf) X(TexEnvi) X(TexGenfv) X(TexGeni) \
+  X(StencilFunc) X(StencilOp) X(TexBuffer) X(TexCoord2f) X(TexCoord3f) X(TexCoord3fv) X(TexEnvf) X(TexEnvfv) X(TexEnvi) X(TexGenfv) X(TexGeni) \
   X(TexImage1D) X(TexImage2D) X(TexImage3D) X(TexParameterfv) X(TexParameteri) X(TexStorage3D) X(TexSubImage1D) X(TexSubImage2D) \
-  X(TexSubImage3D) X(TransformFeedbackVaryings) X(Uniform1f) X(Uniform1fv) X(Uniform1i) X(Uniform2f) X(Uniform3f) X(Uniform4f) X(Uniform4fv) \
+  X(TexSubImage3D) X(TransformFeedbackVaryings) X(Uniform1f) X(Uniform1fv) X(Uniform1i) X(Uniform1ui) X(Uniform2f) X(Uniform3f) X(Uniform4f) X(Uniform4fv) \
   X(UniformBlockBinding) X(UniformMatrix4fv) X(UniformSubroutinesuiv) X(UnmapBuffer) X(UseProgram) \
-  X(UseProgramStages) X(Vertex2f) X(Vertex3f) X(Vertex3fv) X(VertexAttribPointer) X(VertexPointer) X(TexCoordPointer) X(EnableClientState) X(DisableClientState) X(Viewport)
+  X(UseProgramStages) X(Vertex2f) X(Vertex3f) X(Vertex3fv) X(VertexAttrib1f) X(VertexAttribPointer) X(VertexPointer) X(TexCoordPointer) X(EnableClientState) X(DisableClientState) X(Viewport)
 // clang-format on
 
 struct Gl {

@@ -41,7 +41,7 @@ DispatchTable listening_driver() {
 TEST(Run, ReplaysInOrderWithElementDrawsBetween) {
   heard.clear();
   Records calls;
-  spu::Run run(Pipeline{}, calls);
+  spu::Run run(Pipeline{}, calls, false);
   append_call(run.calls(), &DispatchTable::CallList, 4);
   run.draw_elements(GL_TRIANGLES, std::array{spu::ElementPart{.count = 6}}, GL_UNSIGNED_INT);
   append_call(run.calls(), &DispatchTable::CallList, 5);
@@ -51,7 +51,7 @@ TEST(Run, ReplaysInOrderWithElementDrawsBetween) {
 
 TEST(Run, CountsTheTrianglesOfElementDraws) {
   Records calls;
-  spu::Run run(Pipeline{}, calls);
+  spu::Run run(Pipeline{}, calls, false);
   run.draw_elements(GL_TRIANGLES, std::array{spu::ElementPart{.count = 37}}, GL_UNSIGNED_INT);
   run.draw_elements(GL_TRIANGLE_STRIP, std::array{spu::ElementPart{.count = 14}, spu::ElementPart{.count = 2}},
                     GL_UNSIGNED_INT);
@@ -61,10 +61,10 @@ TEST(Run, CountsTheTrianglesOfElementDraws) {
 
 TEST(Run, LeavesOtherTrianglesToTheDriver) {
   Records calls;
-  spu::Run quads(Pipeline{}, calls);
+  spu::Run quads(Pipeline{}, calls, false);
   quads.draw_elements(GL_QUADS, std::array{spu::ElementPart{.count = 8}}, GL_UNSIGNED_INT);
   EXPECT_EQ(quads.triangles(), std::nullopt);
-  spu::Run with_list(Pipeline{}, calls);
+  spu::Run with_list(Pipeline{}, calls, false);
   with_list.draw_elements(GL_TRIANGLES, std::array{spu::ElementPart{.count = 6}}, GL_UNSIGNED_INT);
   with_list.call_list(4);
   EXPECT_EQ(with_list.triangles(), std::nullopt);
@@ -93,7 +93,7 @@ TEST(ClientArrays, AreCapturedAtTheTimeOfTheCall) {
        .first = bytes(colours)},
       {.role = Role::vertex, .components = 3, .type = GL_FLOAT, .stride = 12, .first = bytes(positions)}};
   Records calls;
-  spu::Run run(Pipeline{}, calls);
+  spu::Run run(Pipeline{}, calls, false);
   append_elements(run.calls(), sources, GL_TRIANGLES, {2, 0});
   positions.assign(9, 9.0F);  // the application reuses its buffer
   heard.clear();

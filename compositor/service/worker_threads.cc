@@ -39,7 +39,7 @@ bool can_start(std::size_t count) {
 constexpr std::chrono::seconds start_patience{1};
 
 /// Makes oneTBB start its threads with the calling thread's signal mask, by a loop in which each of `parallel`
-/// threads waits for all others. oneTBB keeps its threads until the process ends.
+/// threads waits for all others. oneTBB ends its threads with its last arena and thread, so the arena stays.
 void start_threads(std::size_t parallel) {
   static constinit std::mutex starting;
   static constinit std::size_t started = 1;
@@ -54,9 +54,8 @@ void start_threads(std::size_t parallel) {
     if (++there == parallel) arrived.notify_all();
     arrived.wait_until(lock, until, [&] { return there >= parallel; });
   };
-  tbb::task_arena(static_cast<int>(parallel)).execute([&] {
-    tbb::parallel_for(std::size_t(0), parallel, wait_for_all, tbb::simple_partitioner());
-  });
+  auto* const kept = new tbb::task_arena(static_cast<int>(parallel));
+  kept->execute([&] { tbb::parallel_for(std::size_t(0), parallel, wait_for_all, tbb::simple_partitioner()); });
   started = parallel;
 }
 

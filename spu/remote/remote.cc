@@ -228,8 +228,15 @@ std::optional<std::uint64_t> Remote::constant(CallId call, const std::uint64_t* 
   return 0;
 }
 
+std::uint64_t Remote::lost_answer(CallId call, const std::uint64_t* words) const {
+  // What was to be written into a buffer has no address.
+  const bool into_buffer = std::string_view(call_name(call)).starts_with("glGetQueryObject") &&
+                           state_.bound_buffer(GL_QUERY_BUFFER) != 0;
+  return into_buffer ? 0 : answer_of_lost_context(call, words);
+}
+
 std::optional<std::uint64_t> Remote::known(CallId call, const std::uint64_t* words) {
-  if (server_.lost()) return answer_of_lost_context(call, words);
+  if (server_.lost()) return lost_answer(call, words);
   if (!answers(call)) return std::nullopt;
   if (call == CallId::GetError && without_error_) return GL_NO_ERROR;
   if (pack_.inside_begin()) return std::nullopt;
@@ -331,7 +338,7 @@ std::uint64_t Remote::take(const Records& records, const PackedCall* last) {
     return 0;
   }
   const std::optional<CallAnswer> answer = server_.ask(records);
-  if (!answer) return answer_of_lost_context(last->call, last->words);
+  if (!answer) return lost_answer(last->call, last->words);
   const std::uint64_t result = apply(*last, *answer);
   if (has_waited(*last, result)) refresh_mappings();
   return result;

@@ -76,6 +76,8 @@ class Remote final : public Unit, public RecordTaker {
   std::uint64_t map(const PackedCall& call, std::uint64_t bytes, const AnsweredOutput& contents);
   GLuint mapped_buffer(CallId call, const std::uint64_t* words) const;
   void drop_mappings(CallId call, const std::uint64_t* words);
+  /// Returns what an application that polls must see after the GL server was lost.
+  std::uint64_t lost_answer(CallId call, const std::uint64_t* words) const;
   void refresh_mappings();
   std::vector<std::byte> contents_of(GLuint buffer, const Mapping& mapping);
 

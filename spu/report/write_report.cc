@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes reports to files.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,6 +16,7 @@
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 
 #include "compositor/logging/log.h"
@@ -33,10 +37,66 @@ std::filesystem::path target_of(const std::filesystem::path& path) {
   return broken ? path : target;
 }
 
+/// Blocks SIGPIPE in its scope, and takes it if it came: a pipe that nobody reads any more ends no process.
+class NoBrokenPipe {
+ public:
+  NoBrokenPipe() {
+    sigemptyset(&pipe_);
+    sigaddset(&pipe_, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+  }
+  ~NoBrokenPipe() {
+    constexpr timespec at_once{};
+    if (sigismember(&before_, SIGPIPE) == 0) sigtimedwait(&pipe_, nullptr, &at_once);
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  NoBrokenPipe(const NoBrokenPipe&) = delete;
+  NoBrokenPipe& operator=(const NoBrokenPipe&) = delete;
+
+ private:
+  sigset_t pipe_{};
+  sigset_t before_{};
+};
+
+/// Whether all was written; a reader that does not read is waited for a second.
+bool write_to(int descriptor, std::string_view text) {
+  constexpr int patience_ms = 1000;
+  const NoBrokenPipe whole;
+  while (!text.empty()) {
+    pollfd ready{descriptor, POLLOUT, 0};
+    if (::poll(&ready, 1, patience_ms) <= 0) return false;
+    const ssize_t part = ::write(descriptor, text.data(), text.size());
+    if (part <= 0) return false;
+    text.remove_prefix(std::size_t(part));
+  }
+  return true;
+}
+
 /// Devices and pipes are written to, and not replaced by a file.
-bool is_replaceable(const std::filesystem::path& path) {
+bool is_special(const std::filesystem::path& path) {
   struct stat status {};
-  return ::lstat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode) || S_ISLNK(status.st_mode);
+  return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+/// Whether the user, or the system, made the path what it is: links and pipes of others are not opened.
+bool is_own(const std::filesystem::path& path) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0 && (status.st_uid == 0 || status.st_uid == ::geteuid());
+}
+
+bool write_to_special(const std::filesystem::path& path, const std::string& text) {
+  if (!is_own(path)) {
+    errno = EACCES;
+    return false;
+  }
+  // Nobody may be reading: that must not stop the application.
+  const int there = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  if (there < 0) return false;
+  const bool written = write_to(there, text);
+  const int reason = errno;
+  ::close(there);
+  errno = reason;
+  return written;
 }
 
 bool write_to(std::FILE* file, const std::string& text) {
@@ -52,9 +112,8 @@ void replace_file(const std::filesystem::path& named, const std::string& text) {
         fmt::format("cannot {} the report {}: {}", what, named.string(), std::strerror(errno)));
   };
   const std::filesystem::path path = target_of(named);
-  if (!is_replaceable(path)) {
-    std::FILE* const there = std::fopen(path.c_str(), "we");
-    if (there == nullptr || !write_to(there, text)) fail("write");
+  if (is_special(named)) {
+    if (!write_to_special(named, text)) fail("write");
     return;
   }
   // The folder may be writable by others: the name cannot be guessed, and no existing file or link is opened.

@@ -63,6 +63,8 @@ Stages& VolumeUnit::stages() {
 }
 
 void VolumeUnit::fill(Phase phase, DispatchTable& table) {
+  // A list sets indexed state when it is called, which shows when it is compiled.
+  if (phase == Phase::compiling) fill_indexed_state_slots(table);
   if (phase == Phase::plain) {
     fill_enclosing_call_slots(table);
     fill_indexed_state_slots(table);
@@ -241,7 +243,7 @@ Phase VolumeUnit::resting_phase() const {
 }
 
 void VolumeUnit::settle_held() {
-  if (!stages_) return;
+  if (!stages_ || stages_->merger.empty()) return;
   std::optional<IndexedState> kept;
   if (indexed_state) kept.emplace(context());
   stages_->merger.settle();

@@ -15,7 +15,7 @@ namespace understudy::spu {
 namespace {
 
 using ::testing::ElementsAre;
-using Words = std::vector<std::string>;
+using CommandLine = std::vector<std::string>;
 
 /// An environment variable that is set for one test.
 class Variable {
@@ -31,7 +31,7 @@ class Variable {
 
 TEST(FormerNames, OptionsAndTheirValuesAreTranslated) {
   struct Case {
-    Words former, present;
+    CommandLine former, present;
   };
   for (const Case& c : {
            Case{{"--polygons", "strips"}, {"--tiles", "on"}},
@@ -45,7 +45,7 @@ TEST(FormerNames, OptionsAndTheirValuesAreTranslated) {
            Case{{"--stage", "--stage-opengl", "egl"}, {"--gl-server", "--server-opengl", "egl"}},
            Case{{"--door", "preload", "--table", "x"}, {"--injection", "preload", "--table", "x"}},
        }) {
-    Words former{"understudy", "run"}, present = former;
+    CommandLine former{"understudy", "run"}, present = former;
     former.insert(former.end(), c.former.begin(), c.former.end());
     present.insert(present.end(), c.present.begin(), c.present.end());
     EXPECT_EQ(with_present_options(former), present) << c.former.front();

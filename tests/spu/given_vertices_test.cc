@@ -122,7 +122,7 @@ ObservedPolygons observed(const GlContext& context, const Case& tried, bool from
   Pipeline pipeline;
   pipeline.stack = tried.stack;
   pipeline.volume.texture = 1;
-  Run run(pipeline, calls);
+  Run run(pipeline, calls, false);
   tried.calls(run);
   run.only_polygons = from_memory;
   GivenVertices given(context);

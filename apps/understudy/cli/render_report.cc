@@ -118,19 +118,20 @@ void write_render_report(const std::string& path, const RenderFigures& figures) 
   const volume::TexelFigures texels = texel_figures(figures.ranks);
   const volume::FrameCounts& counts = figures.counts;
   Json report;
-  report["volume"] = {{"file", figures.file},
-                      {"time_step", figures.time_step},
-                      {"channel", figures.channel ? Json(*figures.channel) : Json()},
-                      {"size", figures.description.size},
-                      {"spacing", figures.description.spacing},
-                      {"level_of_detail", level_json(figures.description)},
-                      {"scalar_type", std::string(volume::name_of(figures.description.type))},
-                      {"texel_type", name_of(figures.mapping.type)},
-                      {"scale", figures.mapping.scale},
-                      {"offset", figures.mapping.offset},
-                      {"values", texels.low <= texels.high ? Json{texels.low, texels.high} : Json()},
-                      {"largest_conversion_error", texels.largest_error},
-                      {"not_numbers", texels.not_numbers}};
+  report["volume"] = {
+      {"file", figures.file},
+      {"time_step", figures.time_step},
+      {"channel", figures.channel ? Json(*figures.channel) : Json()},
+      {"size", figures.description.size},
+      {"spacing", figures.description.spacing},
+      {"level_of_detail", level_json(figures.description)},
+      {"scalar_type", std::string(volume::name_of(figures.description.type))},
+      {"texel_type", name_of(figures.mapping.type)},
+      {"scale", figures.mapping.scale},
+      {"offset", figures.mapping.offset},
+      {"values", texels.low <= texels.high ? Json{texels.low, texels.high} : Json()},
+      {"largest_conversion_error", std::isfinite(texels.largest_error) ? Json(texels.largest_error) : Json()},
+      {"not_numbers", texels.not_numbers}};
   report["image"] = image_json(figures);
   report["nodes"] = figures.nodes;
   report["backends"] = figures.backends;

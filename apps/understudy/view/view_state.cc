@@ -89,6 +89,7 @@ volume::RenderRequest ViewState::request(const FileScene& scene, const volume::T
   }
   volume::RenderRequest request = request_of(scene, image, values);
   shift(request, camera_.shift);
+  request.exact = still_;  // it is shown without loss, and compared with the integral
   return request;
 }
 

@@ -41,8 +41,12 @@ FloatFramebuffer::FloatFramebuffer(const GlContext& context, int width, int heig
                 far.data());
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   if (depth) {
-    gl.TexSubImage2D(GL_TEXTURE_2D, 0, depth->rect.x, depth->rect.y, depth->rect.width, depth->rect.height,
-                     GL_DEPTH_COMPONENT, GL_FLOAT, depth->depth.data());
+    // A viewport may reach beyond the framebuffer.
+    const volume::Rect part = intersection(depth->rect, {0, 0, width, height});
+    const std::vector<float> depths = depth_in(part, depth);
+    if (!part.empty())
+      gl.TexSubImage2D(GL_TEXTURE_2D, 0, part.x, part.y, part.width, part.height, GL_DEPTH_COMPONENT, GL_FLOAT,
+                       depths.data());
   }
   gl.GenFramebuffers(1, framebuffers_.data());
   gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffers_[0]);

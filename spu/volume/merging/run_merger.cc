@@ -175,11 +175,13 @@ volume::FrameCounts RunMerger::show_whole(MergedVolume& merged, const std::vecto
   image.request.version = merged.volume.sent.description.version;
   KnownVolume& volume = merged.volume;
   const bool compared_whole = stages_.verifier.whole_due(volume.verified, false, volume.frames);
+  image.request.exact = compared_whole;
   return stages_.presentation.show(
       service, {first.pipeline(), image, volume, compared_whole}, [&](const volume::ImageView& shown) {
         if (!drawn_ || !drawn_->complete()) return;
         const TimedShare timed(stages_.account.clock(), &FrameShares::verification);
-        const volume::Rect window = intersection(image.request.window, image.request.viewport);
+        const volume::Rect window = comparable(image.request.window, image.request.viewport);
+        if (window.empty()) return;
         const ImageDifference difference = difference_between(first.pipeline(), drawn_->image(window), shown);
         take_comparison(stages_.verifier.judge(difference, 1, 0, *volume.counters), volume,
                         stages_.account.frames());

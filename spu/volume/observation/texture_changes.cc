@@ -49,6 +49,17 @@ void note_again(const Note& note) {
   DrawObserver::current().chain().after_call(note);
 }
 
+/// Commands on the bound texture.
+template <CallId Id, auto Slot>
+struct ChangesBoundTexture;
+template <CallId Id, class... A, void (APIENTRY* DispatchTable::*Slot)(A...)>
+struct ChangesBoundTexture<Id, Slot> {
+  static void APIENTRY call(A... arguments) {
+    (NoteTextureChange::before(Id).*Slot)(arguments...);
+    note_again([] { NoteTextureChange::before(Id); });
+  }
+};
+
 /// Direct state access commands identify the texture by their first argument.
 template <auto Slot>
 struct ChangesNamedTexture;
@@ -98,13 +109,6 @@ void APIENTRY tex_sub_image_3d(GLenum target, GLint level, GLint x, GLint y, GLi
   DrawObserver::current().next().TexSubImage3D(target, level, x, y, z, width, height, depth, format, type,
                                                pixels);
   note_again([&] { bound_box_changes(target, level, box_of(x, y, z, width, height, depth)); });
-}
-
-void APIENTRY tex_image_3d(GLenum target, GLint level, GLint format, GLsizei width, GLsizei height,
-                           GLsizei depth, GLint border, GLenum pixel_format, GLenum type, const void* pixels) {
-  NoteTextureChange::before(CallId::TexImage3D)
-      .TexImage3D(target, level, format, width, height, depth, border, pixel_format, type, pixels);
-  note_again([] { NoteTextureChange::before(CallId::TexImage3D); });
 }
 
 void APIENTRY copy_tex_sub_image_3d(GLenum target, GLint level, GLint x, GLint y, GLint z, GLint from_x,
@@ -170,7 +174,11 @@ void fill_texture_change_slots(DispatchTable& table) {
   table.TextureSubImage2D = ChangesNamedTexture<&Table::TextureSubImage2D>::call;
   table.TextureSubImage3D = texture_sub_image_3d;
   table.CopyTextureSubImage3D = copy_texture_sub_image_3d;
-  table.TexImage3D = tex_image_3d;
+  table.TexImage1D = ChangesBoundTexture<CallId::TexImage1D, &Table::TexImage1D>::call;
+  table.TexImage2D = ChangesBoundTexture<CallId::TexImage2D, &Table::TexImage2D>::call;
+  table.TexImage3D = ChangesBoundTexture<CallId::TexImage3D, &Table::TexImage3D>::call;
+  table.TexSubImage1D = ChangesBoundTexture<CallId::TexSubImage1D, &Table::TexSubImage1D>::call;
+  table.TexSubImage2D = ChangesBoundTexture<CallId::TexSubImage2D, &Table::TexSubImage2D>::call;
   table.TexSubImage3D = tex_sub_image_3d;
   table.CopyTexSubImage3D = copy_tex_sub_image_3d;
   table.ClearTexImage = ChangesNamedTexture<&Table::ClearTexImage>::call;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <functional>
@@ -683,7 +684,7 @@ std::vector<double> uniform_components(const GlContext& context, GLuint program,
 
 std::array<float, 2> UniformValue::floats() const {
   const auto rounded = float(value);
-  return {rounded, float(value - double(rounded))};
+  return {rounded, std::isfinite(rounded) ? float(value - double(rounded)) : 0.0F};
 }
 
 void append_uniform(const GlContext& context, GLuint program, const StageUniform& uniform,

@@ -631,7 +631,8 @@ March RayCasterStage::choose_march(Draw& draw, compositor::RenderService& servic
     volume::RenderRequest composed = compose(draw, march, *box);
     if (!looked_at) {
       const auto drawn =
-          native_image(context_, draw.run, composed, volume::footprint(composed, composed.region));
+          native_image(context_, draw.run, composed,
+                       comparable(volume::footprint(composed, composed.region), composed.viewport));
       if (!drawn) break;
       looked_at = fullest_part(*drawn);
     }

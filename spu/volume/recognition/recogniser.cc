@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "spu/track/program_sources.h"
@@ -124,9 +125,12 @@ bool culls_any(const DispatchTable& gl, const ObservedPolygons& triangles) {
     const auto& a = corner[0].clip;
     const auto& b = corner[1].clip;
     const auto& c = corner[2].clip;
-    // The sign of the area in the window, also where corners lie behind the eye.
-    const double area = a[0] * (b[1] * c[3] - c[1] * b[3]) - b[0] * (a[1] * c[3] - c[1] * a[3]) +
-                        c[0] * (a[1] * b[3] - b[1] * a[3]);
+    // The sign of the area in the window, also where corners lie behind the eye; rounding has none.
+    constexpr double rounding = 1e-6;
+    const std::array terms{a[0] * (b[1] * c[3] - c[1] * b[3]), -b[0] * (a[1] * c[3] - c[1] * a[3]),
+                           c[0] * (a[1] * b[3] - b[1] * a[3])};
+    const double area = terms[0] + terms[1] + terms[2];
+    if (std::abs(area) <= rounding * (std::abs(terms[0]) + std::abs(terms[1]) + std::abs(terms[2]))) continue;
     const bool is_front = (area > 0) == (front == GL_CCW);
     if (is_front == (culled == GL_FRONT)) return true;
   }

@@ -104,15 +104,22 @@ compositor::Rendered FrameLatency::render(const RenderRequest& request) {
   behind_ = false;
   finish();
   View* const view = view_like(request);
-  if (view != nullptr) view->request.exact = request.exact;  // what was not lossy answers both
+  // Nodes may have rounded an image that was not to be exact (--pixels).
+  const bool lossy = view != nullptr && (view->lossy || (request.exact && !view->request.exact));
+  if (view != nullptr) view->request.exact = request.exact;
   const bool same = view != nullptr && view->request == request;
-  if (same && !view->lossy) {
+  if (same && !lossy) {
     const bool repeated = std::exchange(view->told, true);
     return {view->image.view(), repeated ? volume::FrameCounts() : view->counts, repeated};
   }
   if (!allowed_ || view == nullptr || same) {
     compositor::Rendered rendered = service_->render(same ? volume::exactly(request) : request);
-    if (allowed_) keep({request, copy_of(rendered.image), rendered.counts, true, rendered.lossy});
+    // Also where it may not be late: the next image that may would be an earlier one.
+    if (allowed_ || view != nullptr) {
+      RenderRequest cast = request;
+      cast.exact = request.exact || same;
+      keep({std::move(cast), copy_of(rendered.image), rendered.counts, true, rendered.lossy});
+    }
     return rendered;
   }
   const volume::FrameCounts counts = view->told ? volume::FrameCounts() : view->counts;

@@ -60,17 +60,18 @@ class LastImage final : public compositor::RenderService {
 
   compositor::Rendered render(const RenderRequest& request) override {
     const auto same = std::find_if(answers_.begin(), answers_.end(), [&](Answer& answer) {
-      answer.request.exact = request.exact;  // what was not lossy answers both
+      answer.request.exact = request.exact;
       return answer.request == request;
     });
     const bool known = same != answers_.end();
-    const bool lossy = known && same->lossy;
+    // Nodes may have rounded an image that was not to be exact (--pixels).
+    const bool lossy = known && (same->lossy || (request.exact && !same->exact));
     if (known && same->there && !lossy && keeps_ && getpid() == process_) {
       news_("");
       return {same->shown, {}, true};
     }
     const std::string_view why = !keeps_ ? "asked to"
-                                 : lossy ? "it was sent as JPEG before"
+                                 : lossy ? "it was lossy before"
                                  : known ? "others were asked for since"
                                          : reason_for(request);
     for (Answer& answer : answers_) answer.there = answer.there && !answer.kept.rgba.empty();
@@ -83,6 +84,7 @@ class LastImage final : public compositor::RenderService {
     answer.shown = known && keeps_ ? answer.kept.view() : rendered.image;
     answer.there = true;
     answer.lossy = rendered.lossy;
+    answer.exact = request.exact || lossy;
     answer.asked = ++asked_;
     rendered.image = answer.shown;
     return rendered;
@@ -102,6 +104,7 @@ class LastImage final : public compositor::RenderService {
     volume::Image kept;  ///< the image shown, if it is a copy
     bool there = false;
     bool lossy = false;
+    bool exact = false;       ///< as it was cast
     std::uint64_t asked = 0;  ///< number of the request
   };
 

@@ -23,14 +23,6 @@ constexpr double inside_psnr = 40;
 /// A sentinel's pixels are compared with their neighbours, too.
 constexpr int sentinel_rim = 1;
 
-/// Returns the pixels that both the application and the image show. What lies left of the application's
-/// framebuffer or below it is neither drawn nor shown.
-volume::Rect compared_window(const ImageToVerify& what) {
-  const volume::Rect& viewport = what.request.viewport;
-  return intersection(intersection(what.window, viewport),
-                      {0, 0, viewport.x + viewport.width, viewport.y + viewport.height});
-}
-
 }  // namespace
 
 Refusal refusal_of(const Comparison& comparison) {
@@ -63,7 +55,7 @@ std::optional<Comparison> Verifier::verify(const ImageToVerify& what, const volu
 std::optional<Comparison> Verifier::compare_whole(const ImageToVerify& what, const volume::ImageView& image,
                                                   VerifiedVolume& volume, VolumeCounters& counters) {
   const Pipeline& pipeline = what.run.pipeline();
-  const volume::Rect window = compared_window(what);
+  const volume::Rect window = comparable(what.window, what.request.viewport);
   if (window.empty()) return std::nullopt;
   NativeDrawing drawing(context_, pipeline, what.request);
   if (!drawing.complete()) throw Refusal{"the driver offers no float framebuffer to compare images in"};
@@ -131,7 +123,7 @@ volume::Rect Verifier::random_tile(const volume::Rect& window) {
 std::optional<Comparison> Verifier::compare_sentinels(const ImageToVerify& what, const volume::ImageView& image,
                                                       VerifiedVolume& volume, VolumeCounters& counters) {
   const int tiles = volume.schedule.sentinels();
-  const volume::Rect window = compared_window(what);
+  const volume::Rect window = comparable(what.window, what.request.viewport);
   if (tiles == 0 || window.empty()) return std::nullopt;
   NativeDrawing& drawing = sentinel_drawing(what);
   if (!drawing.complete()) return std::nullopt;

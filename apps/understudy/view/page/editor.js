@@ -60,7 +60,9 @@ export class TransferEditor {
 
   remove() {
     if (this.selected < 0 || this.points.length <= 2) return;
-    this.points.splice(this.selected, 1);
+    const left = this.points.filter((_, index) => index !== this.selected);
+    if (left.at(-1).at - left[0].at < least_extent) return;
+    this.points = left;
     this.select(-1);
     this.on.changed();
   }

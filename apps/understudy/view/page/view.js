@@ -379,7 +379,7 @@ const connection = new Connection({
   message: hear,
   image: (head, bytes) => show(head, bytes).catch(error => { element('exactness').textContent = String(error); answered(head.sequence); }),
   closed: () => {
-    on_its_way = null;
+    withdraw();
     volume = null;
     banner('The connection to understudy view is lost; trying again.', null);
   },

@@ -70,7 +70,7 @@ void measure(const char* place, int side, int rounds) {
   ways.push_back({"copy", 32, [&] { std::memcpy(target.data(), back.rgba.data(), target.size_bytes()); }});
   for (const auto& [name, op] : {std::pair("over", Operator::over), std::pair("max", Operator::max),
                                  std::pair("min", Operator::min), std::pair("add", Operator::add)})
-    ways.push_back({name, 48, [&, op] { compositor::blend(op, target, back.rgba); }});
+    ways.push_back({name, 48, [&, op = op] { compositor::blend(op, target, back.rgba); }});
   std::vector<compositor::PixelMessage> messages;
   constexpr std::array layouts{std::pair("float message", Layout::rgba32f),
                                std::pair("half message", Layout::rgba16f),
@@ -79,13 +79,13 @@ void measure(const char* place, int side, int rounds) {
   for (const auto& [name, layout] : layouts) {
     const compositor::PixelMessage& message = messages.emplace_back(arrived(back, layout));
     const std::size_t packed = message.size() / back.rect.pixels();
-    ways.push_back({fmt::format("over, {}", name), 32 + packed, [&, layout] {
+    ways.push_back({fmt::format("over, {}", name), 32 + packed, [&, layout = layout] {
                       compositor::PixelReader reader(message, back.rect, layout);
                       for (int y = 0; y < side; ++y)
                         reader.blend_row_behind(Operator::over, {front.at(0, y), 4 * std::size_t(side)});
                     }});
     ways.push_back({fmt::format("encode, {}", name), 16 + packed,
-                    [&, layout] { encode_pixels(back, back.rect, Operator::over, layout, true); }});
+                    [&, layout = layout] { encode_pixels(back, back.rect, Operator::over, layout, true); }});
   }
   // The number of repetitions makes a turn take about as long in either place.
   const int times = std::max(1, (1 << 21) / (side * side));

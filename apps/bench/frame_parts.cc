@@ -78,7 +78,7 @@ RankPart part_of_rays(const volume::RaySetup& setup, const volume::RenderRequest
       if (!set_up_packet(setup, request, x, y, width, height, packet)) continue;
       for (int row = 0; row < height; ++row)
         for (int column = 0; column < width; ++column) {
-          const auto ray = std::size_t(row * volume::tile_width + column);
+          const auto ray = std::size_t(row) * volume::tile_width + std::size_t(column);
           const int samples = packet.last[ray] - packet.first[ray] + 1;
           if (samples <= 0) continue;
           part.samples += std::uint64_t(samples);

@@ -78,7 +78,7 @@ void measure(const char* place, int side, int rounds) {
   messages.reserve(layouts.size());
   for (const auto& [name, layout] : layouts) {
     const compositor::PixelMessage& message = messages.emplace_back(arrived(back, layout));
-    const std::size_t packed = message.size() / back.rect.pixels();
+    const std::size_t packed = message.size() / std::max(std::size_t{1}, back.rect.pixels());
     ways.push_back({fmt::format("over, {}", name), 32 + packed, [&, layout = layout] {
                       compositor::PixelReader reader(message, back.rect, layout);
                       for (int y = 0; y < side; ++y)

@@ -167,8 +167,12 @@ TEST_F(WebServerTest, AViewersMessagesAreBounded) {
     const std::lock_guard lock(mutex_);
     return said_.size() == max_view_message_bytes;
   }));
-  client.send_text(std::string(max_view_message_bytes + 1, ' '));
-  EXPECT_THROW(client.receive(), system_error);
+  // The connection may be closed before all of it is sent.
+  const auto exceed = [&] {
+    client.send_text(std::string(max_view_message_bytes + 1, ' '));
+    client.receive();
+  };
+  EXPECT_THROW(exceed(), system_error);
   EXPECT_TRUE(comes_true([&] { return left_ == 1; }));
 }
 

@@ -337,7 +337,7 @@ Decoded Decoder::make(Call& call, const DispatchTable& gl) {
   if (slot(gl, call.id) == nullptr) return {0, in_call(call.id, "the driver here does not have it")};
   const TightPixels unpacked(gl, unpack_names, call.tight_unpack);
   const TightPixels packed(gl, pack_names, call.tight_pack);
-  const Decoded decoded{invoke(gl, call.id, call.words.data()), {}};
+  Decoded decoded{invoke(gl, call.id, call.words.data()), {}};
   begin_and_end_.follow(call.id, call.words.data());
   return decoded;
 }

@@ -19,7 +19,7 @@ class Server {
       : socket_(folder / "nodes.sock"),
         process_({command(options, nodes), {{"XDG_RUNTIME_DIR", folder / "runtime"}}}, own_folder(folder)) {
     const bool there = clients::comes_true(
-        [this] { return !process_.running() || process_.out().find("nodes at ") != std::string::npos; });
+        [this] { return !process_.running() || process_.out().find("; use ") != std::string::npos; });
     if (!there || !process_.running()) throw std::runtime_error("no server: " + process_.err());
   }
 

@@ -10,6 +10,7 @@
 #include <condition_variable>
 #include <exception>
 #include <latch>
+#include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -54,8 +55,11 @@ void start_threads(std::size_t parallel) {
     if (++there == parallel) arrived.notify_all();
     arrived.wait_until(lock, until, [&] { return there >= parallel; });
   };
-  auto* const kept = new tbb::task_arena(static_cast<int>(parallel));
-  kept->execute([&] { tbb::parallel_for(std::size_t(0), parallel, wait_for_all, tbb::simple_partitioner()); });
+  // Never destroyed: other threads may use oneTBB until the process ends.
+  static auto* const kept = new std::vector<std::unique_ptr<tbb::task_arena>>;
+  kept->push_back(std::make_unique<tbb::task_arena>(static_cast<int>(parallel)));
+  kept->back()->execute(
+      [&] { tbb::parallel_for(std::size_t(0), parallel, wait_for_all, tbb::simple_partitioner()); });
   started = parallel;
 }
 

@@ -203,10 +203,11 @@ TEST(LostContext, AnswersWhatApplicationsPollFor) {
   EXPECT_EQ(gl.ClientWaitSync(nullptr, 0, 0), GLenum(GL_ALREADY_SIGNALED));
   GLsizei length = 0;
   GLint status = 0;
-  gl.GetSynciv(nullptr, GL_SYNC_STATUS, 1, &length, &status);
+  const auto fence = reinterpret_cast<GLsync>(1);
+  gl.GetSynciv(fence, GL_SYNC_STATUS, 1, &length, &status);
   EXPECT_EQ(length, 1);
   EXPECT_EQ(status, GL_SIGNALED);
-  gl.GetSynciv(nullptr, GL_SYNC_STATUS, 1, nullptr, &status);
+  gl.GetSynciv(fence, GL_SYNC_STATUS, 1, nullptr, &status);
   GLint complete = 0;
   gl.GetProgramiv(1, GL_COMPLETION_STATUS_KHR, &complete);
   EXPECT_EQ(complete, GL_TRUE);

@@ -290,7 +290,7 @@ class WebServer::Listener::Connection : public std::enable_shared_from_this<Conn
   const Viewer number_;
   std::optional<beast::tcp_stream> stream_;
   std::optional<websocket::stream<beast::tcp_stream>> conversation_;  // replaces stream_
-  beast::flat_buffer buffer_{std::size_t(64) << 10U};
+  beast::flat_buffer buffer_{2 * max_view_message_bytes};
   http::request_parser<http::string_body> parser_;
   asio::steady_timer greeting_;
   asio::steady_timer sending_;

@@ -105,7 +105,7 @@ compositor::Rendered FrameLatency::render(const RenderRequest& request) {
   finish();
   View* const view = view_like(request);
   // Nodes may have rounded an image that was not to be exact (--pixels).
-  const bool lossy = view != nullptr && (view->lossy || (request.exact && !view->request.exact));
+  const bool lossy = view != nullptr && (view->lossy || (request.exact && !view->exact));
   if (view != nullptr) view->request.exact = request.exact;
   const bool same = view != nullptr && view->request == request;
   if (same && !lossy) {
@@ -115,11 +115,8 @@ compositor::Rendered FrameLatency::render(const RenderRequest& request) {
   if (!allowed_ || view == nullptr || same) {
     compositor::Rendered rendered = service_->render(same ? volume::exactly(request) : request);
     // Also where it may not be late: the next image that may would be an earlier one.
-    if (allowed_ || view != nullptr) {
-      RenderRequest cast = request;
-      cast.exact = request.exact || same;
-      keep({std::move(cast), copy_of(rendered.image), rendered.counts, true, rendered.lossy});
-    }
+    if (allowed_ || view != nullptr)
+      keep({request, copy_of(rendered.image), rendered.counts, true, rendered.lossy, request.exact || same});
     return rendered;
   }
   const volume::FrameCounts counts = view->told ? volume::FrameCounts() : view->counts;
@@ -128,7 +125,7 @@ compositor::Rendered FrameLatency::render(const RenderRequest& request) {
   const compositor::BlockedSignals blocked;
   cast_ = std::async(std::launch::async, [this, request] {
     const compositor::Rendered rendered = service_->render(request);
-    return View{request, copy_of(rendered.image), rendered.counts, false, rendered.lossy};
+    return View{request, copy_of(rendered.image), rendered.counts, false, rendered.lossy, request.exact};
   });
   behind_ = true;
   return {shown_.view(), counts, false};

@@ -48,6 +48,7 @@ class FrameLatency final : public compositor::RenderService {
     volume::FrameCounts counts;
     bool told = false;   ///< the counts have been returned
     bool lossy = false;  ///< not to be shown again
+    bool exact = false;  ///< as it was cast
   };
 
   void finish();

@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/understudy/cli/budget_options.h"
+#include "apps/understudy/cli/certified_step.h"
 #include "apps/understudy/cli/loading_nodes.h"
 #include "apps/understudy/cli/memory_option.h"
 #include "apps/understudy/cli/output_file.h"
@@ -21,7 +24,6 @@
 #include "apps/understudy/file_scene/load_progress.h"
 #include "apps/understudy/images/image.h"
 #include "apps/understudy/progress/progress_option.h"
-#include "apps/understudy/study/median.h"
 #include "compositor/logging/log.h"
 #include "compositor/passes/pass_plan.h"
 #include "compositor/passes/pass_renderer.h"
@@ -74,15 +76,6 @@ RgbaImage image_of(const volume::ImageView& image, const volume::Rect& window, b
   return file_image;
 }
 
-/// Computes the figures of an image whose pixels are error bounds.
-BoundFigures bound_figures(const volume::ImageView& image) {
-  std::vector<double> bounds;
-  for (std::size_t i = 0; i < image.rgba.size(); i += 4)
-    if (image.rgba[i] > 0) bounds.push_back(std::min(double(image.rgba[i]), 1.0));  // no channel exceeds 1
-  if (bounds.empty()) return {};
-  return {*std::ranges::max_element(bounds), median(bounds), 0};
-}
-
 /// The parts in which a volume is rendered within the ranks' memory: one if it fits as a whole.
 struct Passes {
   volume::Partition parts;
@@ -111,6 +104,19 @@ Passes passes_of(const volume::VolumeFile& file, const FileScene& scene, const R
   return passes;
 }
 
+void take_certified(CertifiedStep certified, RenderFigures& figures) {
+  figures.step = certified.step;
+  figures.request = std::move(certified.request);
+  figures.bound = certified.bound;
+}
+
+/// Returns a function that shows how far the search for a step has come.
+std::function<void(double, double)> show_bound(Progress& progress) {
+  return [&progress](double step, double bound) {
+    progress.show(0, fmt::format("certifying: within {:.3g} at a step of {:.3g} voxels", bound, step));
+  };
+}
+
 RenderFigures render_with(LoadingService& service, const FileScene& scene, const RenderArguments& arguments) {
   RenderFigures figures;
   figures.file = scene.load.file;
@@ -137,11 +143,18 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
   figures.ranks = renderer.ranks();
   figures.load_ms = milliseconds_since(start);
 
+  spu::BudgetAsked asked = budget_asked(arguments.budget, arguments.nodes.choices.pixels == "float");
   const volume::RenderRequest bounding = request_of(scene, scene.image, texel_figures(figures.ranks));
-  figures.request = bounding;
-  figures.request.bound_of.reset();
-  const spu::BudgetAsked asked = budget_asked(arguments.budget, arguments.nodes.choices.pixels == "float");
-  figures.request.exact = bounding.bound_of || asked.error > 0;  // nodes that run already may round others
+  if (bounding.bound_of && asked.error > 0) {
+    take_certified(
+        certified_step(renderer, scene, texel_figures(figures.ranks), asked.error, show_bound(progress)),
+        figures);
+    asked = {};
+  } else {
+    figures.request = bounding;
+    figures.request.bound_of.reset();
+    figures.request.exact = bounding.bound_of || asked.error > 0;  // nodes that run already may round others
+  }
   const volume::RenderRequest own = figures.request;
   const bool in_parts = passes.parts.ranks > 1;
   if (in_parts && asked.ms > 0 && asked.error == 0)
@@ -156,7 +169,7 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
     if (!arguments.save_float.empty())
       write_pfm(arguments.save_float, image_of(rendered.image, figures.request.window, true));
   }
-  if (bounding.bound_of) {
+  if (bounding.bound_of && !figures.bound) {
     start = Clock::now();
     figures.bound = bound_figures(renderer.render(bounding).image);
     figures.bound->time_ms = milliseconds_since(start);
@@ -169,6 +182,7 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
 int render(RenderArguments arguments) {
   refuse_rounded_bounds(arguments);
   arguments.scene.samples_are_free =
+      !arguments.scene.error_bound &&
       budget_asked(arguments.budget, arguments.nodes.choices.pixels == "float").any();
   const FileScene scene = scene_of(arguments.scene);
   RenderFigures figures;
@@ -220,9 +234,10 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
       ->check(can_be_written());
   add_budget_options(*render_command, arguments->budget);
   render_command
-      ->add_flag("--error-bound", arguments->scene.error_bound,
-                 "print a certified bound of the error of the image")
-      ->excludes(render_command->get_option("--error"))
+      ->add_flag(
+          "--error-bound", arguments->scene.error_bound,
+          "print a certified bound of the error of the image; with --error, take the samples of a step at "
+          "which this bound is within E, instead of measuring the error")
       ->excludes(render_command->get_option("--time"));
   render_command
       ->add_option("--frames", arguments->frames,

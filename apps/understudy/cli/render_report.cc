@@ -100,9 +100,14 @@ std::string summary_text(const RenderFigures& figures) {
                                                  : "no error bound: some values are not finite numbers");
   if (figures.bound)
     text += fmt::format(
-        "understudy: certified: every channel of every pixel is within {:.3g} of the integral, and of half the "
+        "understudy: certified: every channel of every pixel is within {:.3g} of the integral{}, and of half "
+        "the "
         "pixels within {:.3g}; computing these bounds took {:.0f} ms\n",
-        figures.bound->greatest, figures.bound->median, figures.bound->time_ms);
+        figures.bound->greatest,
+        figures.bound->asked > 0
+            ? fmt::format(" (asked: {:.3g}; step {:.3g})", figures.bound->asked, figures.step)
+            : "",
+        figures.bound->median, figures.bound->time_ms);
   if (spu::has_budget(figures.budget))
     text += fmt::format("understudy: {}\n", spu::sentence_of(figures.budget));
   const volume::TexelFigures texels = texel_figures(figures.ranks);
@@ -151,7 +156,8 @@ void write_render_report(const std::string& path, const RenderFigures& figures) 
   report["budget"] = spu::report_of(figures.budget);
   report["error_bound"] = nullptr;
   if (figures.bound)
-    report["error_bound"] = {{"greatest", figures.bound->greatest},
+    report["error_bound"] = {{"asked", figures.bound->asked > 0 ? Json(figures.bound->asked) : Json()},
+                             {"greatest", figures.bound->greatest},
                              {"median", figures.bound->median},
                              {"time_ms", figures.bound->time_ms}};
   report["origin"] = origin();

@@ -20,6 +20,7 @@ struct BoundFigures {
   double greatest = 0;
   double median = 0;  ///< over the pixels whose rays hit the volume
   double time_ms = 0;
+  double asked = 0;  ///< greatest bound that was asked for; 0: the samples were given instead
 };
 
 struct RenderFigures {

@@ -185,6 +185,33 @@ TEST_F(Render, WhatIsWrongIsSaidWithTheNextStep) {
   EXPECT_THAT(trouble(file + " --error-bound --quality 90"), HasSubstr("leave out --quality"));
 }
 
+TEST_F(Render, AnErrorIsCertifiedWithTheBound) {
+  const std::string common =
+      ball(16) + " --size 24x20 --save-float " + folder_.file("f.pfm") + " --report " + folder_.file("r.json");
+  ASSERT_EQ(render(common + " --termination 0 --step 0.01").status, 0);
+  const RgbaImage converged = read_image(folder_.file("f.pfm"));
+  for (const double asked : {0.05, 0.005}) {
+    const Result result = render(common + " --error-bound --error " + std::to_string(asked));
+    ASSERT_EQ(result.status, 0) << result.output;
+    const Json bound = report()["error_bound"];
+    EXPECT_EQ(bound["asked"], asked);
+    EXPECT_LE(bound["greatest"], asked);
+    EXPECT_TRUE(report()["budget"].is_null()) << "nothing was estimated";
+    EXPECT_THAT(result.output, HasSubstr("(asked: "));
+    const Difference apart = difference(read_image(folder_.file("f.pfm")), converged);
+    std::printf("asked %g, certified %g at a step of %g, %g from the converged image\n", asked,
+                bound["greatest"].get<double>(), report()["image"]["step"].get<double>(), apart.max);
+    EXPECT_LE(apart.max, bound["greatest"].get<double>());
+  }
+}
+
+TEST_F(Render, AnErrorThatCannotBeCertifiedIsRefusedWithTheBound) {
+  const Result result = render(ball(8) + " --size 6x5 --error-bound --error 1e-7");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.output, HasSubstr("an error of 1e-07 cannot be certified"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("p.png")));
+}
+
 #ifdef UNDERSTUDY_HAS_NODES
 
 TEST_F(Render, NodesGiveTheImageOfOneProcessAndReadTheirSharesAlone) {

@@ -72,6 +72,11 @@ class ShareGroup {
   void texture_rendered_to(GLuint texture);
   bool is_rendered_to(GLuint texture) const;
 
+  /// Single draw buffers or viewports of a context may have a state of their own. A display list that one
+  /// context compiles may set such a state in another.
+  void indexed_state_set() { indexed_state_.store(true, std::memory_order_relaxed); }
+  bool has_indexed_state() const { return indexed_state_.load(std::memory_order_relaxed); }
+
   /// The calls of one of the contexts are not tracked from now on, so no information about the group's objects
   /// is reliable.
   void leave_to_driver() { left_to_driver_.store(true, std::memory_order_relaxed); }
@@ -113,6 +118,7 @@ class ShareGroup {
   std::atomic<bool> has_volumes_{false};
   std::atomic<int> stack_watchers_{0};
   std::atomic<bool> lists_change_textures_{false};
+  std::atomic<bool> indexed_state_{false};
   std::atomic<bool> left_to_driver_{false};
 };
 

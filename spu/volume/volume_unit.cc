@@ -77,22 +77,27 @@ void VolumeUnit::fill(Phase phase, DispatchTable& table) {
 }
 
 void VolumeUnit::refuse_in_this_frame(GLuint texture, const Refusal& refusal) {
-  volumes_.refuse_in_this_frame(texture, refusal, stages().account);
+  // One line for all bricks of a volume.
+  const MergedVolume* const merged = stages().merged.volume_with(texture);
+  const bool say = merged == nullptr || merged->textures.front() == texture;
+  volumes_.refuse_in_this_frame(texture, refusal, stages().account, say);
 }
 
 bool VolumeUnit::substitutes(std::unique_ptr<Run>& run) {
   const GLuint texture = run->volume_texture();
   const bool shown = [&] {
     std::optional<IndexedState> kept;
-    if (indexed_state) kept.emplace(context());
+    if (chain().group().has_indexed_state()) kept.emplace(context());
     return shows(run);
   }();
   FrameAccount& account = stages().account;
   const FrameShares spent = account.clock().take();
   account.note([&](FrameRecord& frame) { frame.spent_ms += spent; });
   // No volume is found for a stack of textures that turned out not to be one.
-  if (KnownVolume* const volume = volumes_.find(texture))
-    count_speed(*volume, shown, spent, session_->options());
+  if (run == nullptr)
+    stages().merger.count_held(spent);
+  else if (KnownVolume* const volume = volumes_.find(texture))
+    count_speed(*volume, shown, spent, volume->verified.schedule.native_ms(), session_->options());
   return shown;
 }
 
@@ -110,8 +115,7 @@ bool VolumeUnit::shows(std::unique_ptr<Run>& run) {
     return false;
   }
   try {
-    if (auto refusal = volumes_.standing_refusal(texture, run->pipeline().program))
-      throw Refusal{std::move(*refusal)};
+    if (auto refusal = standing_refusal(texture, run->pipeline().program)) throw Refusal{std::move(*refusal)};
     substitute(run);
     return true;
   } catch (const Refusal& refusal) {
@@ -129,6 +133,14 @@ bool VolumeUnit::shows(std::unique_ptr<Run>& run) {
     volumes_.refuse(texture, error.what(), account);
   }
   return run == nullptr || run->shown;
+}
+
+std::optional<Refusal> VolumeUnit::standing_refusal(GLuint texture, GLuint program) {
+  if (auto refusal = volumes_.standing_refusal(texture)) return refusal;
+  MergedVolume* const merged = stages().merged.volume_with(texture);
+  return merged != nullptr && merged->shown_as_one(stages().account.frames())
+             ? stages().merged.speed_refusal(*merged, program)
+             : volumes_.speed_refusal(texture, program);
 }
 
 bool VolumeUnit::is_a_stack(const Run& run) {
@@ -245,7 +257,7 @@ Phase VolumeUnit::resting_phase() const {
 void VolumeUnit::settle_held() {
   if (!stages_ || stages_->merger.empty()) return;
   std::optional<IndexedState> kept;
-  if (indexed_state) kept.emplace(context());
+  if (chain().group().has_indexed_state()) kept.emplace(context());
   stages_->merger.settle();
 }
 

@@ -48,9 +48,7 @@ class VolumeUnit final : public DrawObserver {
  private:
   struct Recognised;
 
-  std::optional<Refusal> standing_refusal(GLuint texture, GLuint program) override {
-    return volumes_.standing_refusal(texture, program);
-  }
+  std::optional<Refusal> standing_refusal(GLuint texture, GLuint program) override;
   void refuse_in_this_frame(GLuint texture, const Refusal& refusal) override;
   bool substitutes(std::unique_ptr<Run>& run) override;
   Phase resting_phase() const override;

@@ -22,7 +22,7 @@ constexpr int edge = 12;  ///< 3 x 2 x 2 bricks of the blob
 class Bricks : public ::testing::Test {
  protected:
   void SetUp() override {
-    app = GlApplication::start(Profile::compatibility);
+    app = GlApplication::start(Profile::compatibility, options());
     if (!app) GTEST_SKIP() << "no EGL context here; install libegl1 and libgl1-mesa-dri";
     cube = std::make_unique<BrickedCube>(*app, edge, kind());
     target = std::make_unique<ColourTarget>(*app, GL_RGBA32F);
@@ -30,6 +30,7 @@ class Bricks : public ::testing::Test {
   }
 
   virtual BrickKind kind() const { return {}; }
+  virtual Options options() const { return {}; }
 
   std::vector<float> frame(bool under, const BrickedCube::Drawing& drawing) {
     app->use_chain(under);
@@ -222,6 +223,55 @@ TEST_F(Bricks, ThatWaitWhenTheNodesAreLostAreShownAllTheSame) {
   std::uint64_t runs = 0;
   for (int i = 0; i < 10000 && runs != 1; ++i) runs = substituted_in();
   EXPECT_EQ(runs, 1U);
+}
+
+/// Compared tiles and frames of all volumes so far.
+struct Comparisons {
+  std::uint64_t tiles = 0;
+  std::uint64_t frames = 0;
+  std::uint64_t lost = 0;
+
+  static Comparisons so_far() {
+    Comparisons sum;
+    for (const VolumeCounters& volume : process_counters().volume) {
+      sum.tiles += volume.verified_tiles;
+      sum.frames += volume.verified_frames;
+      sum.lost += volume.verify_lost;
+    }
+    return sum;
+  }
+};
+
+TEST_F(Bricks, HaveSentinelsAsOneVolume) {
+  frame(true);
+  expect_merged();
+  const Comparisons before_turning = Comparisons::so_far();
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(substituted_in(15 + i), 1U) << i;
+  const Comparisons after = Comparisons::so_far();
+  EXPECT_GT(after.tiles, before_turning.tiles);
+  EXPECT_EQ(after.frames, before_turning.frames) << "nothing changed but the camera";
+  EXPECT_EQ(after.lost, before_turning.lost);
+}
+
+class BricksComparedInEveryFrame : public Bricks {
+  /// The image's own alpha is what the framebuffer's alpha becomes.
+  BrickKind kind() const override {
+    return {.blending = [](const DispatchTable& gl) {
+      gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    }};
+  }
+  Options options() const override { return {.verify = 1}; }
+};
+
+TEST_F(BricksComparedInEveryFrame, AreShownAsTheApplicationDrawsThemWhereTheirImageIsWrong) {
+  frame(true);
+  expect_merged();
+  const Comparisons before_change = Comparisons::so_far();
+  app->use_chain(false);
+  cube->repaint(*app, 0);
+  EXPECT_EQ(substituted_in(), 0U) << "the nodes have the texels of before";
+  EXPECT_EQ(app->left(), cube->bricks());
+  EXPECT_EQ(Comparisons::so_far().lost, before_change.lost + 1);
 }
 
 TEST_F(Bricks, ThatAreDeletedTakeTheVolumeWithThem) {

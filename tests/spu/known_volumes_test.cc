@@ -49,17 +49,17 @@ TEST(Refusal, StandsUntilALostComparisonMayBeTriedAgain) {
   ShareGroup group;
   KnownVolumes volumes(group, session);
   KnownVolume& volume = volumes.of(7);
-  EXPECT_FALSE(volumes.standing_refusal(7, 1));
+  EXPECT_FALSE(volumes.standing_refusal(7));
   Comparison lost;
   lost.difference.worst.excess = 1;
   EXPECT_THROW(take_comparison(lost, volume, 0), Refusal);
   volume.refusals.last_reason = "it was wrong";
-  ASSERT_TRUE(volumes.standing_refusal(7, 1));
-  EXPECT_EQ(volumes.standing_refusal(7, 1)->reason, "it was wrong");
+  ASSERT_TRUE(volumes.standing_refusal(7));
+  EXPECT_EQ(volumes.standing_refusal(7)->reason, "it was wrong");
   volume.refusals.next_try = 0;
-  EXPECT_FALSE(volumes.standing_refusal(7, 1));
+  EXPECT_FALSE(volumes.standing_refusal(7));
   volume.refusals.handed_back = "it is not understood";
-  EXPECT_EQ(volumes.standing_refusal(7, 1)->reason, "it is not understood");
+  EXPECT_EQ(volumes.standing_refusal(7)->reason, "it is not understood");
 }
 
 }  // namespace

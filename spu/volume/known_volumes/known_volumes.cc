@@ -15,12 +15,6 @@ namespace {
 /// Frames until a volume is tried again, by the number of failed comparisons in a row.
 constexpr std::array<std::uint64_t, 4> pauses = {1, 1, 4, 16};
 
-/// Identifies the program and the contents of the volume.
-std::uint64_t state_of(GLuint texture, GLuint program, const ShareGroup& group) {
-  constexpr std::uint64_t prime = 0x100000001b3;
-  return (group.texture_version(texture) * prime) ^ program;
-}
-
 }  // namespace
 
 KnownVolumes::KnownVolumes(ShareGroup& group, std::shared_ptr<RenderSession> session)
@@ -50,18 +44,34 @@ void KnownVolumes::forget_redefined(GLuint texture) {
   volumes_.erase(found);
 }
 
-std::optional<Refusal> KnownVolumes::standing_refusal(GLuint texture, GLuint program) {
+std::uint64_t state_of(std::span<const GLuint> textures, GLuint program, const ShareGroup& group) {
+  constexpr std::uint64_t prime = 0x100000001b3;
+  std::uint64_t state = 0;
+  for (const GLuint texture : textures) state = (state ^ group.texture_version(texture)) * prime;
+  return state ^ program;
+}
+
+std::optional<Refusal> speed_refusal(KnownVolume& volume, std::uint64_t state) {
+  const auto now = SpeedGuard::Clock::now();
+  volume.speed.about_to_draw(state, now);
+  if (!volume.speed.pauses(now)) return std::nullopt;
+  if (volume.speed.slower().empty()) return Refusal{volume.refusals.last_reason};
+  return Refusal{"the viewer's own drawing is faster (--speed-guard off substitutes it all the same)",
+                 volume.speed.slower()};
+}
+
+std::optional<Refusal> KnownVolumes::speed_refusal(GLuint texture, GLuint program) {
+  return spu::speed_refusal(of(texture), state_of(std::span(&texture, 1), program, group_));
+}
+
+std::optional<Refusal> KnownVolumes::standing_refusal(GLuint texture) {
   forget_redefined(texture);
   KnownVolume& volume = of(texture);
   const RefusalHistory& history = volume.refusals;
   if (!history.handed_back.empty()) return Refusal{history.handed_back};
   if (history.pauses(session_->ledger().frames()) && !history.last_reason.empty())
     return Refusal{history.last_reason};
-  const auto now = SpeedGuard::Clock::now();
-  volume.speed.about_to_draw(state_of(texture, program, group_), now);
-  if (!volume.speed.pauses(now)) return std::nullopt;
-  if (volume.speed.slower().empty()) return Refusal{history.last_reason};
-  return Refusal{volume.speed.slower(), {}, "--speed-guard off substitutes it all the same"};
+  return std::nullopt;
 }
 
 void KnownVolumes::refuse(GLuint texture, const Refusal& refusal, FrameAccount& account, bool say) {
@@ -77,9 +87,10 @@ void KnownVolumes::refuse(GLuint texture, const Refusal& refusal, FrameAccount& 
   if (!refusal.advice.empty()) logging::log(logging::Level::info, "  what helps: {}", refusal.advice);
 }
 
-void KnownVolumes::refuse_in_this_frame(GLuint texture, const Refusal& refusal, FrameAccount& account) {
+void KnownVolumes::refuse_in_this_frame(GLuint texture, const Refusal& refusal, FrameAccount& account,
+                                        bool say) {
   const std::uint64_t frame = session_->ledger().frames();
-  if (of(texture).refusals.left_in_frame != frame) refuse(texture, refusal, account);
+  if (of(texture).refusals.left_in_frame != frame) refuse(texture, refusal, account, say);
   of(texture).refusals.left_in_frame = frame;
 }
 
@@ -112,7 +123,8 @@ void count_substituted(KnownVolume& volume, const volume::FrameCounts& counts, F
   });
 }
 
-void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, const Options& options) {
+void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, std::optional<double> native_ms,
+                 const Options& options) {
   if (!options.speed_guard || options.debug_tint) return;
   // Waiting for earlier drawing is not part of the cost of the volume.
   const double ours_ms =
@@ -121,7 +133,7 @@ void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, cons
   if (!shown) {
     volume.speed.refused(ours_ms, now);
     if (std::exchange(volume.refusals.explained_otherwise, false)) volume.speed.allow_another();
-  } else if (const auto native_ms = volume.verified.schedule.native_ms()) {
+  } else if (native_ms) {
     volume.speed.shown(ours_ms, *native_ms, now);
   }
 }

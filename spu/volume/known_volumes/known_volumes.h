@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "spu/volume/known_volumes/known_volume.h"
 #include "spu/volume/verification/verifier.h"
@@ -31,15 +32,17 @@ class KnownVolumes {
   KnownVolume* find(GLuint texture);
   bool empty() const { return volumes_.empty(); }
 
-  /// Returns why the application itself draws the volume with `program`, as far as known before the draw is
-  /// examined; null if there is no reason. Takes the session's lock.
-  std::optional<Refusal> standing_refusal(GLuint texture, GLuint program);
+  /// Returns why the application itself draws the volume, as far as known before the draw is examined; null if
+  /// there is no reason. Takes the session's lock.
+  std::optional<Refusal> standing_refusal(GLuint texture);
+  /// The same for the sake of speed, for a volume that is drawn with `program`.
+  std::optional<Refusal> speed_refusal(GLuint texture, GLuint program);
   /// Counts that the application draws the volume of `texture`, and prints the reason on stderr if it is new
   /// and `say` is set.
   void refuse(GLuint texture, const Refusal& refusal, FrameAccount& account, bool say = true);
 
   /// The same for slices that are drawn one by one and still form one run: once per frame.
-  void refuse_in_this_frame(GLuint texture, const Refusal& refusal, FrameAccount& account);
+  void refuse_in_this_frame(GLuint texture, const Refusal& refusal, FrameAccount& account, bool say = true);
 
   /// Forget volumes whose textures were deleted, or all; the service forgets them, too. Take the session's
   /// lock.
@@ -59,8 +62,16 @@ class KnownVolumes {
 /// Counts a substituted run.
 void count_substituted(KnownVolume& volume, const volume::FrameCounts& counts, FrameAccount& account);
 
-/// Reports the time of an attempt to substitute a run to the speed guard.
-void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, const Options& options);
+/// Identifies the program and the contents of a volume's textures: what a speed guard's verdict depends on.
+std::uint64_t state_of(std::span<const GLuint> textures, GLuint program, const ShareGroup& group);
+
+/// Returns why the application itself draws `volume` for the sake of speed; null if there is no reason.
+std::optional<Refusal> speed_refusal(KnownVolume& volume, std::uint64_t state);
+
+/// Reports the time of an attempt to substitute a volume to its speed guard. `native_ms`: what the
+/// application's own drawing would have taken; null: unknown.
+void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, std::optional<double> native_ms,
+                 const Options& options);
 
 /// Evaluates a comparison in `frame`. If it failed, the volume is measured anew, and the refusal is thrown that
 /// makes the application draw it.

@@ -62,6 +62,22 @@ class AllPolygons {
 
 }  // namespace
 
+volume::RenderRequest placed_as_whole(const MergedVolume& merged, GLuint texture,
+                                      volume::RenderRequest request) {
+  const std::size_t place = *merged.place_of(texture);
+  const PlaceMap map = map_of(merged.tiling, place, merged.descriptions[place].size);
+  for (std::size_t row = 0; row < 4; ++row) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      double& scaled = request.texture_to_clip[4 * row + k];
+      scaled /= map.scale[k];
+      request.texture_to_clip[4 * row + 3] -= scaled * map.offset[k];
+    }
+  }
+  request.region = {};
+  request.clip_planes.clear();
+  return request;
+}
+
 MergedSlices merged_slices(const MergedVolume& merged, std::span<const BrickSlices> bricks,
                            const Pipeline& pipeline) {
   const RecognisedRun& first = *bricks.front().seen;

@@ -7,6 +7,7 @@
 
 #include "spu/volume/geometry/recognised_run.h"
 #include "spu/volume/merging/merged_volume.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 
@@ -22,6 +23,11 @@ struct MergedSlices {
   SliceSet slices;
   std::vector<volume::HalfSpace> clip_planes;
 };
+
+/// Returns the request for a brick as one for the whole volume, for what does not depend on slices: where it
+/// lies in the window.
+volume::RenderRequest placed_as_whole(const MergedVolume& merged, GLuint texture,
+                                      volume::RenderRequest request);
 
 /// `bricks` in drawing order, all drawn by `pipeline`. Throws Refusal if they are not slices of one volume.
 MergedSlices merged_slices(const MergedVolume& merged, std::span<const BrickSlices> bricks,

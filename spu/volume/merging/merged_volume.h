@@ -20,6 +20,15 @@ struct MergedVolume {
   std::vector<volume::TexelBox> shown;           ///< texels of each texture that its slices read
   Tiling tiling;
   KnownVolume volume;  ///< the whole; `refusals.handed_back`: reason why it is always drawn brick by brick
+  /// Of the frame that began after `frames_at_verdict` frames: why the application draws the bricks. One
+  /// verdict holds for all bricks of a frame, because the whole is shown only if none is missing.
+  std::optional<Refusal> verdict;
+  std::optional<std::uint64_t> frames_at_verdict;
+
+  /// False if the bricks are drawn one by one in the frame after `frames` frames.
+  bool shown_as_one(std::uint64_t frames) const {
+    return volume.refusals.handed_back.empty() && !volume.refusals.pauses(frames);
+  }
 
   std::optional<std::size_t> place_of(GLuint texture) const;
 };

@@ -105,6 +105,14 @@ void MergedVolumes::find() {
   }
 }
 
+std::optional<Refusal> MergedVolumes::speed_refusal(MergedVolume& merged, GLuint program) {
+  const std::uint64_t frames = session_.ledger().frames();
+  if (merged.frames_at_verdict == frames) return merged.verdict;
+  merged.frames_at_verdict = frames;
+  merged.verdict = spu::speed_refusal(merged.volume, state_of(merged.textures, program, group_));
+  return merged.verdict;
+}
+
 void MergedVolumes::learn_anew(GLuint texture, const volume::TexelBox& texels) {
   forget(texture);
   volume::TexelBox& shown = shown_[texture];

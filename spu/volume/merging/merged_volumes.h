@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "spu/volume/geometry/recognised_run.h"
@@ -29,6 +30,9 @@ class MergedVolumes {
 
   /// Returns the volume that `texture` is a brick of; null if there is none.
   MergedVolume* volume_with(GLuint texture) const;
+  /// Returns why the application itself draws the bricks of `merged` with `program` in this frame, for the sake
+  /// of speed; null if there is no reason.
+  std::optional<Refusal> speed_refusal(MergedVolume& merged, GLuint program);
   /// `texture` has changed, or its slices read more `texels`: forgets its volume, and learns it anew.
   void learn_anew(GLuint texture, const volume::TexelBox& texels);
 

@@ -12,12 +12,11 @@
 #include "compositor/logging/log.h"
 #include "compositor/service.h"
 #include "spu/volume/context/saved_state.h"
-#include "spu/volume/depth/depth.h"
 #include "spu/volume/merging/merged_geometry.h"
 #include "spu/volume/merging/merged_upload.h"
 #include "spu/volume/request/explanation.h"
 #include "spu/volume/texture/value_range.h"
-#include "spu/volume/verification/tile_comparison.h"
+#include "volume/footprint.h"
 #include "volume/texel_box.h"
 
 namespace understudy::spu {
@@ -67,7 +66,7 @@ MergedVolume* RunMerger::volume_of(const Pipeline& pipeline, const RecognisedRun
   if (pipeline.stack || seen.ray_caster || volume.frames == 0 || (pipeline.depth_test && pipeline.depth_write))
     return nullptr;
   MergedVolume* const merged = merged_.volume_with(pipeline.volume.texture);
-  return merged != nullptr && merged->volume.refusals.handed_back.empty() ? merged : nullptr;
+  return merged != nullptr && merged->shown_as_one(stages_.account.frames()) ? merged : nullptr;
 }
 
 std::optional<ImageRequest> RunMerger::request_of(const Pipeline& pipeline, const RecognisedRun& seen,
@@ -109,11 +108,12 @@ bool RunMerger::holds(std::unique_ptr<Run>& run, RecognisedRun& seen, KnownVolum
   auto image = request_of(pipeline, seen, volume, *merged);
   if (!image) return false;
   if (!goes_with_held(*merged, pipeline, image->request)) settle();
-  VerifiedVolume& verified = merged->volume.verified;
-  if (held_.empty())
-    verified.schedule.begin(image->inputs,
-                            intersection(image->request.window, image->request.viewport).pixels());
-  if (stages_.verifier.whole_due(verified, false, merged->volume.frames)) draw_natively(*run, image->request);
+  if (held_.empty()) {
+    const volume::RenderRequest whole = placed_as_whole(*merged, pipeline.volume.texture, image->request);
+    merged->volume.verified.schedule.begin(image->inputs, volume::footprint(whole, whole.region).pixels());
+    comparison_.begin(*merged, *run, image->request);
+  }
+  comparison_.add(*run);
   held_.reserve(held_.size() + 1);
   held_volume_ = merged;
   held_.push_back({std::move(run), std::move(seen), std::move(*image), &volume});
@@ -121,49 +121,62 @@ bool RunMerger::holds(std::unique_ptr<Run>& run, RecognisedRun& seen, KnownVolum
   return true;
 }
 
-void RunMerger::draw_natively(const Run& run, volume::RenderRequest request) {
-  const TimedShare timed(stages_.account.clock(), &FrameShares::verification);
-  const Pipeline& pipeline = run.pipeline();
-  if (held_.empty()) {
-    if (pipeline.depth_test)
-      request.depth = read_depth(stages_.context, pipeline.target, request.window, pipeline.depth_or_equal);
-    drawn_ = std::make_unique<NativeDrawing>(stages_.context, pipeline, request);
-  }
-  if (drawn_) drawn_->add(run);
-}
-
 void RunMerger::forget_held() {
   held_.clear();
-  drawn_.reset();
+  comparison_.end();
+  spent_ = {};
+}
+
+void RunMerger::count_held(const FrameShares& spent) {
+  if (!held_.empty()) spent_ += spent;
 }
 
 void RunMerger::settle() {
   if (held_.empty()) return;
   FrameClock& clock = stages_.account.clock();
+  std::vector<HeldRun> held = std::exchange(held_, {});
+  MergedVolume& merged = *held_volume_;
+  std::optional<double> native_ms;
+  std::exception_ptr trouble;
   {
     const TimedShare timed(clock, &FrameShares::recognition);
-    std::vector<HeldRun> held = std::exchange(held_, {});
-    MergedVolume& merged = *held_volume_;
     nothing_held_();
-    const bool all = held.size() == merged.textures.size();
-    if (!all || !shows_as_one(merged, held)) {
-      std::exception_ptr trouble;
-      for (HeldRun& each : held) {
-        try {
-          show_alone(each);
-        } catch (const std::exception&) {
-          trouble = std::current_exception();
-        }
-      }
-      if (trouble) std::rethrow_exception(trouble);
+    try {
+      native_ms = show_held(merged, held);
+    } catch (const std::exception&) {
+      trouble = std::current_exception();
     }
-    drawn_.reset();
+    comparison_.end();
   }
-  stages_.account.note([spent = clock.take()](FrameRecord& frame) { frame.spent_ms += spent; });
+  const FrameShares spent = clock.take();
+  stages_.account.note([&](FrameRecord& frame) { frame.spent_ms += spent; });
+  spent_ += spent;
+  count_speed(merged.volume, trouble == nullptr, std::exchange(spent_, {}), native_ms,
+              stages_.session.options());
+  if (trouble) std::rethrow_exception(trouble);
 }
 
-volume::FrameCounts RunMerger::show_whole(MergedVolume& merged, const std::vector<HeldRun>& held,
-                                          ImageRequest& image, compositor::RenderService& service) {
+std::optional<double> RunMerger::show_held(MergedVolume& merged, std::vector<HeldRun>& held) {
+  const bool all = held.size() == merged.textures.size();
+  if (all && shows_as_one(merged, held)) return merged.volume.verified.schedule.native_ms();
+  std::optional<double> native_ms = 0;
+  std::exception_ptr trouble;
+  for (HeldRun& each : held) {
+    const auto of_brick = each.volume->verified.schedule.native_ms();
+    native_ms = native_ms && of_brick ? std::optional(*native_ms + *of_brick) : std::nullopt;
+    try {
+      show_alone(each);
+    } catch (const std::exception&) {
+      trouble = std::current_exception();
+    }
+  }
+  if (trouble) std::rethrow_exception(trouble);
+  return native_ms;
+}
+
+std::optional<volume::FrameCounts> RunMerger::show_whole(MergedVolume& merged, const std::vector<HeldRun>& held,
+                                                         ImageRequest& image,
+                                                         compositor::RenderService& service) {
   const HeldRun& first = held.front();
   std::vector<BrickVersion> versions;
   for (const HeldRun& each : held)
@@ -174,18 +187,19 @@ volume::FrameCounts RunMerger::show_whole(MergedVolume& merged, const std::vecto
   image.request.volume = merged.volume.sent.description.id;
   image.request.version = merged.volume.sent.description.version;
   KnownVolume& volume = merged.volume;
-  const bool compared_whole = stages_.verifier.whole_due(volume.verified, false, volume.frames);
-  image.request.exact = compared_whole;
-  return stages_.presentation.show(
-      service, {first.pipeline(), image, volume, compared_whole}, [&](const volume::ImageView& shown) {
-        if (!drawn_ || !drawn_->complete()) return;
-        const TimedShare timed(stages_.account.clock(), &FrameShares::verification);
-        const volume::Rect window = comparable(image.request.window, image.request.viewport);
-        if (window.empty()) return;
-        const ImageDifference difference = difference_between(first.pipeline(), drawn_->image(window), shown);
-        take_comparison(stages_.verifier.judge(difference, 1, 0, *volume.counters), volume,
-                        stages_.account.frames());
-      });
+  image.request.exact = comparison_.begun();
+  const ImageToShow what{first.pipeline(), image, volume, comparison_.whole()};
+  try {
+    return stages_.presentation.show(service, what, [&](const volume::ImageView& shown) {
+      comparison_.check(first.pipeline(), shown, volume);
+    });
+  } catch (const Refusal& refusal) {
+    const auto& native = comparison_.shown_instead();
+    if (!native) throw;
+    stages_.presentation.show_native(service, what, {native->rect, native->rgba});
+    leave(held, refusal);
+    return std::nullopt;
+  }
 }
 
 bool RunMerger::shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held) {
@@ -205,8 +219,9 @@ bool RunMerger::shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held) {
     image.request.clip_planes = std::move(whole.clip_planes);
     stages_.composer.hide_behind_geometry(pipeline, image.request);
     const auto lock = stages_.session.lock();
-    const volume::FrameCounts counts = show_whole(merged, held, image, stages_.session.service());
+    const auto counts = show_whole(merged, held, image, stages_.session.service());
     shown = true;
+    if (!counts) return true;
     for (std::size_t k = 0; k < 3; ++k) volume.counters->size[k] = merged.tiling.size[k];
     if (volume.frames == 0 || stages_.session.options().explain)
       put_text(volume.counters->explanation,
@@ -214,21 +229,31 @@ bool RunMerger::shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held) {
                            explanation(pipeline, volume.sent.texture, image, whole.camera.residual)));
     for (const HeldRun& each : held) ++each.volume->frames;
     if (++volume.frames == frames_before_bricks_go) forget_single_bricks(merged);
-    count_substituted(volume, counts, stages_.account);
+    count_substituted(volume, *counts, stages_.account);
     return true;
   } catch (const Refusal& refusal) {
-    volume.refusals.handed_back = refusal.reason;
+    volume.refusals.last_reason = refusal.reason;
   } catch (const compositor::ServiceLost& lost) {
     const auto lock = stages_.session.lock();
     stages_.session.lost(lost);
     return false;
   } catch (const std::exception& error) {
     if (shown) throw;
-    volume.refusals.handed_back = error.what();
+    volume.refusals.last_reason = error.what();
   }
+  // After a failed comparison it is tried again; another reason holds in every frame.
+  if (!volume.refusals.pauses(stages_.account.frames()))
+    volume.refusals.handed_back = volume.refusals.last_reason;
   logging::log(logging::Level::warn, "{} textures of one volume are shown one by one: {}",
-               merged.textures.size(), volume.refusals.handed_back);
+               merged.textures.size(), volume.refusals.last_reason);
   return false;
+}
+
+void RunMerger::leave(const std::vector<HeldRun>& held, const Refusal& refusal) {
+  for (const HeldRun& each : held) {
+    each.volume->verified.schedule.ask_for_whole();
+    volumes_.refuse(each.pipeline().volume.texture, refusal, stages_.account, &each == &held.front());
+  }
 }
 
 void RunMerger::forget_single_bricks(const MergedVolume& merged) {

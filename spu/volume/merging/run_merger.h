@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "spu/volume/known_volumes/known_volumes.h"
+#include "spu/volume/merging/brick_comparison.h"
 #include "spu/volume/merging/merged_volumes.h"
 #include "spu/volume/observation/run.h"
 #include "spu/volume/presentation/presentation.h"
@@ -47,7 +48,11 @@ class RunMerger {
   /// `nothing_held` is called when waiting runs are about to be shown.
   RunMerger(const MergingStages& stages, KnownVolumes& volumes, MergedVolumes& merged,
             std::function<void()> nothing_held)
-      : stages_(stages), volumes_(volumes), merged_(merged), nothing_held_(std::move(nothing_held)) {}
+      : stages_(stages),
+        volumes_(volumes),
+        merged_(merged),
+        nothing_held_(std::move(nothing_held)),
+        comparison_(stages.context, stages.session, stages.verifier, stages.account) {}
 
   bool empty() const { return held_.empty(); }
 
@@ -59,6 +64,8 @@ class RunMerger {
   void forget_held();
   /// Shows the waiting runs now, whether or not all bricks are there.
   void settle();
+  /// Adds what it took to recognise a run that waits to the time of the volume's image.
+  void count_held(const FrameShares& spent);
 
  private:
   /// Returns the volume that `pipeline` draws a brick of, if its run may wait; otherwise null.
@@ -72,10 +79,16 @@ class RunMerger {
                                          KnownVolume& volume, const MergedVolume& merged);
   bool goes_with_held(const MergedVolume& merged, const Pipeline& pipeline,
                       const volume::RenderRequest& request) const;
-  void draw_natively(const Run& run, volume::RenderRequest request);
+  /// Shows all of `held` as one image, or each by itself. Returns how long the application would have taken for
+  /// them; null if that is not known.
+  std::optional<double> show_held(MergedVolume& merged, std::vector<HeldRun>& held);
   bool shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held);
-  volume::FrameCounts show_whole(MergedVolume& merged, const std::vector<HeldRun>& held, ImageRequest& image,
-                                 compositor::RenderService& service);
+  /// The application's own drawing was shown instead of the common image of `held`, which was wrong. The
+  /// bricks' own images are compared before they are shown.
+  void leave(const std::vector<HeldRun>& held, const Refusal& refusal);
+  /// Empty if the image was wrong, and what the application draws was shown instead.
+  std::optional<volume::FrameCounts> show_whole(MergedVolume& merged, const std::vector<HeldRun>& held,
+                                                ImageRequest& image, compositor::RenderService& service);
   /// Shows one run that waited, with the session's service or, if that fails, one of its own.
   void show_alone(HeldRun& run);
   volume::FrameCounts show_by_session(HeldRun& run);
@@ -88,9 +101,10 @@ class RunMerger {
   KnownVolumes& volumes_;
   MergedVolumes& merged_;
   std::function<void()> nothing_held_;
+  BrickComparison comparison_;  ///< of the held runs
   std::vector<HeldRun> held_;
-  MergedVolume* held_volume_ = nullptr;   ///< volume of which the held runs are bricks
-  std::unique_ptr<NativeDrawing> drawn_;  ///< native rendering of the held runs, in frames that are verified
+  MergedVolume* held_volume_ = nullptr;  ///< volume of which the held runs are bricks
+  FrameShares spent_{};                  ///< on the held runs, in milliseconds
 };
 
 }  // namespace understudy::spu

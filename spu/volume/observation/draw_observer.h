@@ -54,8 +54,6 @@ class DrawObserver : public Unit {
   /// Between glBeginTransformFeedback and glEndTransformFeedback. From OpenGL 4.0 on a query is used instead,
   /// which takes paused feedback into account.
   bool transform_feedback = false;
-  /// Draw buffers or viewports may have a state of their own (IndexedState).
-  bool indexed_state = false;
   StackWatch stacks;
   /// Many 2-D textures of one size were defined: draws with them may be a stack of slices.
   void stack_defined();

@@ -6,6 +6,8 @@
 #include <string_view>
 
 #include "dispatch/pass_through.h"
+#include "spu/chain.h"
+#include "spu/track/share_group.h"
 #include "spu/volume/observation/draw_observer.h"
 
 namespace understudy::spu {
@@ -35,7 +37,7 @@ struct NoteIndexedState {
   }
   static const DispatchTable& before(CallId) {
     DrawObserver& observer = DrawObserver::current();
-    observer.indexed_state = true;
+    observer.chain().group().indexed_state_set();
     return observer.next();
   }
 };

@@ -65,6 +65,13 @@ volume::FrameCounts Presentation::show(compositor::RenderService& service, const
   return image.counts;
 }
 
+void Presentation::show_native(compositor::RenderService& service, const ImageToShow& what,
+                               const volume::ImageView& image) {
+  const TimedShare timed(account_.clock(), &FrameShares::presentation);
+  RenderedImage native{.shown = image, .kept = {}, .counts = {}};
+  present(service, what, native);
+}
+
 void Presentation::save(const ImageToShow& what, const volume::ImageView& shown) {
   const std::string trouble = save_frame(session_.options().save_frames, saved_++, what.image.request.viewport,
                                          shown, volume::neutral_value(what.pipeline.blending.op));

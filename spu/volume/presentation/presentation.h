@@ -26,6 +26,9 @@ class Presentation {
   /// Renders the request and draws the image into the application's framebuffer. Requires the session's lock.
   /// Throws what `check` and the service throw; then nothing is shown.
   volume::FrameCounts show(compositor::RenderService& service, const ImageToShow& what, const Check& check);
+  /// Draws `image`, which the application itself has drawn elsewhere, in place of the request's; alpha, if it
+  /// requires a second image, is the service's. Requires the session's lock.
+  void show_native(compositor::RenderService& service, const ImageToShow& what, const volume::ImageView& image);
 
  private:
   bool skips(Optimization optimization) const { return !session_.disabled_optimizations(optimization); }

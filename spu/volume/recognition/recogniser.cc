@@ -228,6 +228,8 @@ void Recogniser::observe_shader(const Run& run, const ProgramStages& stages,
   if (run.pipeline().blending.replaces) throw Refusal{slices_replace};
   if (!stages.trouble.empty()) throw Refusal{stages.trouble};
   if (culls_any(*context_.gl, capture.polygons)) throw Refusal{"faces of slices are culled"};
+  if (!capture.fit && capture.polygons.count() == 1)
+    throw Refusal{"a single slice does not determine the camera"};
   if (!capture.fit) throw Refusal{"no output of the vertex shader is an affine map of the position"};
   seen.polygons = std::move(capture.polygons);
   seen.fit = capture.fit;

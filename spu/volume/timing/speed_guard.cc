@@ -54,11 +54,8 @@ void SpeedGuard::shown(double ours_ms, double native_ms, Clock::time_point now) 
   account_ms_ = std::min(account_ms_, most_saved_frames * native_ms);
   slower_.clear();
   if (account_ms_ >= 0) return;
-  slower_ = fmt::format(
-      "substituting it takes {:.3g} ms, the viewer's own drawing {:.3g} ms (--speed-guard off substitutes it "
-      "all "
-      "the same)",
-      ours_ms, native_ms);
+  slower_ =
+      fmt::format("substituting it took {:.3g} ms, the viewer's own drawing {:.3g} ms", ours_ms, native_ms);
 }
 
 }  // namespace understudy::spu

@@ -32,8 +32,7 @@ class SpeedGuard {
   /// The next attempt is likely to succeed, and is made whatever the balance of the account.
   void allow_another() { allowed_ = true; }
 
-  /// The sentence for the report if images were shown and took longer; empty: attempts ended for another
-  /// reason.
+  /// Both times, as evidence, if images were shown and took longer; empty: attempts ended for another reason.
   const std::string& slower() const { return slower_; }
 
   static constexpr double share_for_attempts = 0.02;

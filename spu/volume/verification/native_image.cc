@@ -93,6 +93,16 @@ class NarrowedScissor {
   std::array<GLint, 4> box_{};
 };
 
+/// Waits until the device has drawn everything. Not by glFinish where a fence can do it: glFinish ends a frame
+/// of OSMesa.
+void wait_for_device(const GlContext& context) {
+  const DispatchTable& gl = *context.gl;
+  if (context.version < 320) return gl.Finish();
+  GLsync const fence = gl.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  gl.ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, ~GLuint64(0));
+  gl.DeleteSync(fence);
+}
+
 }  // namespace
 
 NativeDrawing::NativeDrawing(const GlContext& context, const Pipeline& pipeline,
@@ -127,25 +137,26 @@ void NativeDrawing::add(const Run& run) {
 void NativeDrawing::compile(const Run& run, const volume::Rect& window,
                             const std::optional<volume::DepthImage>& depth) {
   const volume::Rect pixel{window.x + window.width / 2, window.y + window.height / 2, 1, 1};
-  redraw(run, pixel, depth);
-  if (complete()) framebuffer_->clear(pixel, depth, background_);
+  clear(pixel, depth);
+  add_within(run, pixel);
+  clear(pixel, depth);
 }
 
 double NativeDrawing::add_timed(const Run& run) {
-  const DispatchTable& gl = *context_.gl;
-  gl.Finish();
+  wait_for_device(context_);
   const auto start = std::chrono::steady_clock::now();
   add(run);
-  gl.Finish();
+  wait_for_device(context_);
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-void NativeDrawing::redraw(const Run& run, const volume::Rect& rect,
-                           const std::optional<volume::DepthImage>& depth) {
-  if (!complete()) return;
-  framebuffer_->clear(rect, depth, background_);
+void NativeDrawing::clear(const volume::Rect& rect, const std::optional<volume::DepthImage>& depth) {
+  if (complete()) framebuffer_->clear(rect, depth, background_);
+}
+
+void NativeDrawing::add_within(const Run& run, const volume::Rect& rect) {
   const NarrowedScissor scissor(*context_.gl, rect);
-  draw(run);
+  add(run);
 }
 
 NativeImage NativeDrawing::image(const volume::Rect& rect) const {

@@ -43,13 +43,15 @@ class NativeDrawing {
   bool complete() const { return framebuffer_ && framebuffer_->complete(); }
   /// Draws the run's calls in the state for which they were made.
   void add(const Run& run);
+  /// As add(), within `rect` only.
+  void add_within(const Run& run, const volume::Rect& rect);
+  /// Removes what was drawn in `rect`; `depth` is what opaque geometry left there.
+  void clear(const volume::Rect& rect, const std::optional<volume::DepthImage>& depth);
   /// Draws into one pixel, and clears it: drivers compile a program when it first draws into a kind of
-  /// framebuffer, which is not part of the time of its drawing. `depth` as in redraw().
+  /// framebuffer, which is not part of the time of its drawing. `depth` as in clear().
   void compile(const Run& run, const volume::Rect& window, const std::optional<volume::DepthImage>& depth);
   /// As add(), and waits for the device to finish. Returns the time in milliseconds.
   double add_timed(const Run& run);
-  /// As add(), within `rect` only, which is cleared first; `depth` is what opaque geometry left there.
-  void redraw(const Run& run, const volume::Rect& rect, const std::optional<volume::DepthImage>& depth);
   NativeImage image(const volume::Rect& rect) const;
 
  private:

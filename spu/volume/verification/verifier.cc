@@ -20,9 +20,6 @@ using Clock = std::chrono::steady_clock;
 /// effect than from outside, and also in other views than the one that is compared.
 constexpr double inside_psnr = 40;
 
-/// A sentinel's pixels are compared with their neighbours, too.
-constexpr int sentinel_rim = 1;
-
 }  // namespace
 
 Refusal refusal_of(const Comparison& comparison) {
@@ -98,26 +95,15 @@ void Verifier::count(const ImageDifference& difference, VolumeCounters& counters
   }
 }
 
-NativeDrawing& Verifier::sentinel_drawing(const ImageToVerify& what) {
-  const Pipeline& pipeline = what.run.pipeline();
-  const volume::Rect& viewport = what.request.viewport;
-  const bool white = pipeline.blending.op == volume::Operator::min;
-  const std::array<int, 4> extent{viewport.x + viewport.width, viewport.y + viewport.height,
-                                  pipeline.target.samples, white ? 1 : 0};
-  if (!sentinel_drawing_ || sentinel_extent_ != extent) {
-    sentinel_drawing_ = std::make_unique<NativeDrawing>(context_, pipeline, what.request);
-    sentinel_extent_ = extent;
+std::optional<Comparison> Verifier::judge_sentinel(const ImageDifference& difference,
+                                                   VolumeCounters& counters) {
+  counters.verified_tiles.fetch_add(1, std::memory_order_relaxed);
+  if (difference.worst.severity() > counters.verify_worst_tile) {
+    counters.verify_worst_tile = difference.worst.severity();
+    counters.verify_worst_frame = account_.frames() + 1;
   }
-  return *sentinel_drawing_;
-}
-
-volume::Rect Verifier::random_tile(const volume::Rect& window) {
-  const auto place = [&](int low, int extent) {
-    return low + std::uniform_int_distribution<int>(0, std::max(extent - compared_tile_edge, 0))(random_);
-  };
-  return intersection(
-      window, {place(window.x, window.width) - sentinel_rim, place(window.y, window.height) - sentinel_rim,
-               compared_tile_edge + 2 * sentinel_rim, compared_tile_edge + 2 * sentinel_rim});
+  if (difference.worst.within_bound()) return std::nullopt;
+  return Comparison{.difference = difference, .right = false, .native_ms = {}};
 }
 
 std::optional<Comparison> Verifier::compare_sentinels(const ImageToVerify& what, const volume::ImageView& image,
@@ -125,22 +111,17 @@ std::optional<Comparison> Verifier::compare_sentinels(const ImageToVerify& what,
   const int tiles = volume.schedule.sentinels();
   const volume::Rect window = comparable(what.window, what.request.viewport);
   if (tiles == 0 || window.empty()) return std::nullopt;
-  NativeDrawing& drawing = sentinel_drawing(what);
+  NativeDrawing& drawing = sentinels_.drawing(context_, what.run.pipeline(), what.request);
   if (!drawing.complete()) return std::nullopt;
   const auto start = Clock::now();
   for (int i = 0; i < tiles; ++i) {
-    const volume::Rect tile = random_tile(window);
-    drawing.redraw(what.run, tile, what.request.depth);
+    const volume::Rect tile = sentinels_.next_tile(window);
+    drawing.clear(tile, what.request.depth);
+    drawing.add_within(what.run, tile);
     NativeImage native = drawing.image(tile);
-    const ImageDifference difference = difference_between(what.run.pipeline(), native, image);
-    counters.verified_tiles.fetch_add(1, std::memory_order_relaxed);
-    if (difference.worst.severity() > counters.verify_worst_tile) {
-      counters.verify_worst_tile = difference.worst.severity();
-      counters.verify_worst_frame = account_.frames() + 1;
-    }
-    if (!difference.worst.within_bound()) {
+    if (auto lost = judge_sentinel(difference_between(what.run.pipeline(), native, image), counters)) {
       lost_to_ = {std::move(native), 1};
-      return Comparison{.difference = difference, .right = false, .native_ms = {}};
+      return lost;
     }
   }
   volume.schedule.sentinels_took(tiles, milliseconds_since(start));

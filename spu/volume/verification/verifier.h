@@ -3,17 +3,14 @@
 // in sentinels (schedule.h decides when, tile_comparison.h by which bound).
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <memory>
 #include <optional>
-#include <random>
 
 #include "spu/report/counters.h"
 #include "spu/volume/refusal/refusal.h"
 #include "spu/volume/session/render_session.h"
 #include "spu/volume/timing/frame_account.h"
-#include "spu/volume/verification/native_image.h"
+#include "spu/volume/verification/sentinels.h"
 #include "spu/volume/verification/tile_comparison.h"
 #include "spu/volume/verification/verified_volume.h"
 
@@ -58,6 +55,8 @@ class Verifier {
 
   /// Returns the verdict on a whole image, and counts it.
   Comparison judge(const ImageDifference& difference, double bound, double native_ms, VolumeCounters& counters);
+  /// The same for a sentinel; null if it was right.
+  std::optional<Comparison> judge_sentinel(const ImageDifference& difference, VolumeCounters& counters);
 
  private:
   std::optional<Comparison> compare_whole(const ImageToVerify& what, const volume::ImageView& image,
@@ -65,8 +64,6 @@ class Verifier {
   std::optional<Comparison> compare_sentinels(const ImageToVerify& what, const volume::ImageView& image,
                                               VerifiedVolume& volume, VolumeCounters& counters);
   void count(const ImageDifference& difference, VolumeCounters& counters);
-  NativeDrawing& sentinel_drawing(const ImageToVerify& what);
-  volume::Rect random_tile(const volume::Rect& window);
 
   const GlContext& context_;
   RenderSession& session_;
@@ -77,10 +74,7 @@ class Verifier {
     double bound = 1;
   };
   Lost lost_to_;
-  std::unique_ptr<NativeDrawing> sentinel_drawing_;
-  std::array<int, 4> sentinel_extent_{};  ///< of sentinel_drawing_: width, height, samples, whether its
-                                          ///< background is white
-  std::minstd_rand random_;               ///< positions of sentinels
+  Sentinels sentinels_;
 };
 
 }  // namespace understudy::spu

@@ -56,8 +56,8 @@ std::optional<Refusal> speed_refusal(KnownVolume& volume, std::uint64_t state) {
   volume.speed.about_to_draw(state, now);
   if (!volume.speed.pauses(now)) return std::nullopt;
   if (volume.speed.slower().empty()) return Refusal{volume.refusals.last_reason};
-  return Refusal{"the viewer's own drawing is faster (--speed-guard off substitutes it all the same)",
-                 volume.speed.slower()};
+  return Refusal{"the viewer's own drawing is faster", volume.speed.slower(),
+                 "--speed-guard off substitutes it all the same"};
 }
 
 std::optional<Refusal> KnownVolumes::speed_refusal(GLuint texture, GLuint program) {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -83,6 +84,9 @@ RenderRequest bound_request(const Texture& texture, const TransferFunction& of_v
   return request;
 }
 
+/// As many pixels are integrated because of their bounds.
+constexpr std::size_t greatest_integrated = 20;
+
 struct Outcome {
   double bound = 0;  ///< largest of the image
   double error = 0;  ///< largest of the integrated pixels
@@ -107,12 +111,17 @@ Outcome outcome_of(unsigned seed) {
   raycast(store, request, image, counts);
   const Field field = texture_field(texture.description, Filter::linear, texture.texels);
   const Medium medium = Medium::of_samples(of_voxel, 1);
+  // Pixels all over the image, and those where the bound is greatest: there the error may be, too.
+  std::vector<float> sorted = bounds;
+  std::ranges::sort(sorted, std::greater());
+  const float among_greatest = sorted[greatest_integrated];
   Outcome outcome;
+  outcome.bound = double(sorted.front());
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 24; ++x) {
-      const double bound = double(bounds[std::size_t(24) * std::size_t(y) + std::size_t(x)]);
-      outcome.bound = std::max(outcome.bound, bound);
-      if ((x + 3 * y) % 11 != 0) continue;
+      const float bound_of_pixel = bounds[std::size_t(24) * std::size_t(y) + std::size_t(x)];
+      if ((x + 3 * y) % 11 != 0 && bound_of_pixel <= among_greatest) continue;
+      const auto bound = double(bound_of_pixel);
       const auto exact = pixel_integral(field, texture.description.size, unit, medium, x, y);
       double error = 0;
       for (std::size_t k = 0; k < 4; ++k)
@@ -138,7 +147,8 @@ void expect_certified(unsigned scenes) {
       "%zu of %u scenes with an error of 1e-5 and more: bound over error %.2f in the median, 95 %% below "
       "%.1f\n",
       index.size(), scenes, at(0.5), at(0.95));
-  EXPECT_LE(at(0.5), 30);
+  EXPECT_LE(at(0.5), 4);
+  EXPECT_LE(at(0.95), 20);
 }
 
 TEST(ErrorBound, HoldsInRandomScenes) {
@@ -149,7 +159,7 @@ TEST(FullErrorBound, HoldsInAThousandRandomScenes) {
   expect_certified(1000);
 }
 
-TEST(ErrorBound, FallsWithTheSquareOfTheStepWhereAllIsSmooth) {
+TEST(ErrorBound, FallsWithTheStepWhereAllIsSmooth) {
   Texture texture = sampled(describe({33, 33, 33}, TexelType::f32), linear_field({0.3, 0.25, 0.35}, 0.05));
   texture.description.ghost_layer = 16;
   const BrickStore store = filled(texture);
@@ -160,17 +170,19 @@ TEST(ErrorBound, FallsWithTheSquareOfTheStepWhereAllIsSmooth) {
     const auto alpha = float(-std::expm1(-0.06 * v * v));
     of_voxel.entries.push_back({alpha, 0.5F * alpha, 0, alpha});
   }
-  double before = 0;
-  for (const double step : {4.0, 2.0, 1.0, 0.5}) {
+  std::vector<double> bounds;
+  for (const double step : {4.0, 2.0, 1.0, 0.5, 0.25}) {
     const RenderRequest request = bound_request(texture, of_voxel, {33, 21, 3}, step);
     const double bound = double(std::ranges::max(error_bounds(store, variation, request, 1)));
     std::printf("step %g: bound %.2e\n", step, bound);
-    if (before > 0) {
-      EXPECT_LT(bound, before / 2) << step;
+    // Bounds follow errors, which fall with the square of the step, but not evenly.
+    if (!bounds.empty()) {
+      EXPECT_LT(bound, bounds.back()) << step;
     }
-    before = bound;
+    bounds.push_back(bound);
   }
-  EXPECT_LT(before, 1e-3);
+  EXPECT_LT(bounds.back(), bounds.front() / 15);
+  EXPECT_LT(bounds.back(), 6e-5);
 }
 
 TEST(ErrorBound, OfPartsComposesToABoundOfTheWhole) {
@@ -187,17 +199,24 @@ TEST(ErrorBound, OfPartsComposesToABoundOfTheWhole) {
         << "no two images differ by more than 1";
     for (const int ranks : {2, 5}) {
       const Image parts = render_parts(texture, request, ranks, draw).image;
+      float of_parts = 0, of_whole = 0;
       for (std::size_t i = 0; i < parts.rgba.size(); i += 4) {
-        // A part's bound is computed without what lies behind it.
-        ASSERT_GE(parts.rgba[i], 0.9999F * whole.image.rgba[i] - 1e-6F) << i;
-        ASSERT_LE(parts.rgba[i], 1.5F * whole.image.rgba[i] + 1e-6F) << i;
-        ASSERT_NEAR(parts.rgba[i + 3], whole.image.rgba[i + 3], 1e-5F) << i;
+        // Errors of different parts do not cancel, and each part is divided as finely as its own error
+        // requires.
+        ASSERT_GE(parts.rgba[i], 0.5F * whole.image.rgba[i] - 1e-5F) << i;
+        of_parts = std::max(of_parts, parts.rgba[i]);
+        of_whole = std::max(of_whole, whole.image.rgba[i]);
+        ASSERT_NEAR(parts.rgba[i + 3], whole.image.rgba[i + 3], 0.05F) << i;
       }
+      std::printf("step %g, %d ranks: bound %.2e, of the whole %.2e\n", step, ranks, double(of_parts),
+                  double(of_whole));
+      EXPECT_LE(of_parts, 3 * of_whole);
     }
     request.bound_of.reset();
     const Image image = render_whole(texture, request).image;
     for (std::size_t i = 3; i < image.rgba.size(); i += 4)
-      ASSERT_LE(whole.image.rgba[i], image.rgba[i] + 1e-5F) << "the least opacity";
+      ASSERT_LE(whole.image.rgba[i], image.rgba[i] + whole.image.rgba[i - 1] + 1e-5F)
+          << "the least opacity, of the integral";
   }
 }
 

@@ -37,117 +37,111 @@ struct Ray {
     for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = k * step[axis] + start[axis];
     return p;
   }
-};
-
-/// Bounds of the field's variation along a segment, in entries of the images' function.
-struct AlongRay {
-  double slope = 0;     ///< G, the greatest slope
-  double bend = 0;      ///< V, the variation of the slope
-  double weighted = 0;  ///< W: V weighted by the Peano kernel of the midpoint rule
-  int cells = 1;        ///< number of cells that the segment may cross
-};
-
-/// The Peano kernel of the midpoint rule over [0, 1]: the contribution of a jump of the derivative at `place`
-/// to the error. Positions are known up to rounding.
-double peano_kernel(double place) {
-  constexpr double rounding = 2e-3;
-  const double to_end = 0.5 - std::max(std::abs(place - 0.5) - rounding, 0.0);
-  return to_end > 0 ? to_end * to_end / 2 : 0;
-}
-
-/// Bounds along `length` steps of a ray, from `from` to `to`.
-AlongRay along_ray(const Ray& ray, const Place& from, const Place& to, double length, const Variation& near,
-                   double scale) {
-  AlongRay along;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double speed = std::abs(double(ray.step[axis]));
-    along.slope += speed * double(near.slope[axis]);
-    const double jump = speed * double(near.bend[axis]);
-    // Cell faces between the two positions, or so close that rounding may lead past them.
-    constexpr double rounding = 1e-3;
-    const auto [low, high] = std::minmax({double(from[axis]), double(to[axis])});
-    const auto first = int(std::ceil(low - rounding)), last = int(std::floor(high + rounding));
-    for (int face = first; face <= last; ++face) {
-      const double share = high > low ? (face - low) / (high - low) : 0.5;
-      along.bend += jump;
-      along.weighted += jump * peano_kernel(from[axis] < to[axis] ? share : 1 - share);
-      ++along.cells;
-    }
+  std::array<double, 3> at(double k) const {
+    std::array<double, 3> p;
+    for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = k * double(step[axis]) + double(start[axis]);
+    return p;
   }
-  const double x = std::abs(double(ray.step[0])), y = std::abs(double(ray.step[1])),
-               z = std::abs(double(ray.step[2]));
-  const double twist = 2 * (x * y + y * z + x * z) * double(near.twist);
-  along.bend += length * twist;
-  along.weighted += twist / 24;
-  along.slope *= scale;
-  along.bend *= scale;
-  along.weighted *= scale;
+};
+
+/// Bounds of the field's variation over a part of a ray within one cell, per length of the part, in entries of
+/// the images' function.
+struct AlongPart {
+  double slope = 0;  ///< G
+  double twist = 0;  ///< V, the greatest second derivative
+};
+
+AlongPart along_part(const Ray& ray, double length, const Variation& near, double scale) {
+  AlongPart along;
+  std::array<double, 3> speed{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    speed[axis] = length * std::abs(double(ray.step[axis]));
+    // Slopes are infinite near a NaN.
+    if (speed[axis] > 0) along.slope += speed[axis] * double(near.slope[axis]) * scale;
+  }
+  const double mixed = speed[0] * speed[1] + speed[1] * speed[2] + speed[0] * speed[2];
+  if (mixed > 0) along.twist = 2 * mixed * double(near.twist) * scale;
   return along;
 }
 
-/// Bounds the difference between the mean of a quantity over a segment of `length` steps and its value half a
-/// step after the segment's start, given the quantity's range, greatest slope and curvature, and sum of kinks
-/// over values.
-double off_middle(const AlongRay& along, double length, double range, double slope, double curve,
-                  double kinks) {
-  if (length == 1) {
-    // A cubic takes each value at most three times.
-    const double passes = along.slope + (3 * along.cells - 1) * along.bend;
-    const double first_order = slope * along.slope / 4;
-    const double second_order =
-        slope * along.weighted + curve * along.slope * along.slope / 24 + kinks * passes / 8;
-    return std::min({range, first_order, second_order});
-  }
-  const double behind = length - 0.5;
-  const double first_order = slope * along.slope * (0.125 + behind * behind / 2) / length;
-  return std::min(range, first_order);
+/// Bounds the difference between the mean of a quantity over a part and its value in the middle, given the
+/// quantity's range, greatest slope and curvature, and sum of kinks over values.
+double off_middle(const AlongPart& along, double range, double slope, double curve, double kinks) {
+  // A cubic takes each value at most three times, and turns in between.
+  const double passes = along.slope + 2 * along.twist;
+  const double first_order = slope * along.slope / 4;
+  const double second_order =
+      slope * along.twist / 24 + curve * along.slope * along.slope / 24 + kinks * passes / 8;
+  return std::min({range, first_order, second_order});
 }
+
+/// What composites from front to back: plain colours, with 1 as fourth channel, behind a transparency.
+struct Composite {
+  std::array<double, 4> shown{};
+  double transparency = 1;
+
+  void put_behind(const std::array<double, 4>& plain, double its_transparency) {
+    for (std::size_t k = 0; k < 4; ++k) shown[k] += transparency * (1 - its_transparency) * plain[k];
+    transparency *= its_transparency;
+  }
+};
 
 template <typename FieldType>
 class BoundWalk {
  public:
   BoundWalk(const Scene& scene, const FieldVariation& field, const MediumVariation& medium, float termination)
-      : reader_(scene), scene_(scene), field_(field), medium_(medium), termination_(termination) {}
+      : reader_(scene),
+        scene_(scene),
+        table_(*scene.table),
+        scale_(double(table_.scale())),
+        field_(field),
+        medium_(medium),
+        termination_(termination) {}
 
   /// Bound of the error of samples `first` to `last`, and their least opacity. If the ray continues in cells of
   /// other ranks, anything may follow.
   std::array<double, 2> bound(const Ray& ray, int first, int last, float last_length) {
-    segments_.clear();
-    double transparency = 1;
-    for (int k = first; k <= last && transparency >= double(termination_); ++k) {
-      segments_.push_back(segment_at(ray, k, k == last ? double(last_length) : 1));
-      transparency *= segments_.back().transparency;
+    parts_.clear();
+    image_ = {};
+    double rounding = first == 0 ? rounding_of_ray : 0;  // once for all ranks' samples of a ray
+    for (int k = first; k <= last && image_.transparency >= double(termination_); ++k) {
+      rounding += add_segment(ray, k, k == last ? double(last_length) : 1);
       // A segment extends at most one step before its sample and one step behind it.
       const float empty = reader_.steps_in_empty(ray.step);
       if (empty >= 3) k += int(std::min(empty, 1e6F)) - 2;
     }
     // What lies behind the point where the ray became opaque is not sampled.
-    const bool ended = transparency < double(termination_);
-    const double brightest = std::max(1.0, medium_.brightest());
-    double bound = ended ? brightest : 0;
-    double least_opaque = 0;
-    Behind behind;
-    behind.open = !ended && last_length == 1 ? 1 : 0;
-    for (auto segment = segments_.rbegin(); segment != segments_.rend(); ++segment) {
-      const double most_transparent = std::min(segment->transparency + segment->transparency_off, 1.0);
-      bound = segment->transparency_off * behind.farthest_from(segment->plain, brightest) +
-              segment->colour_off + most_transparent * bound;
-      least_opaque = 1 - most_transparent * (1 - least_opaque);
-      behind.put_before(*segment);
+    const bool ended = image_.transparency < double(termination_);
+    const bool open = !ended && last_length == 1;
+    Total found = total(ended, open);
+    for (int round = 0; round < most_rounds && worth_refining(found); ++round) {
+      refine(ray, found.off_of_parts);
+      found = total(ended, open);
     }
-    // Added once for all parts of a ray.
-    return {bound + (first == 0 ? rounding_of_ray : 0), least_opaque};
+    return {found.apart + found.off + rounding, found.least_opaque};
   }
 
  private:
-  struct Segment {
-    double transparency = 1;        ///< in the image
+  /// A part of a segment that lies in one cell, with its sample in the middle.
+  struct Part {
+    double transparency = 1;
     std::array<double, 4> plain{};  ///< its plain colour, and 1
     double transparency_off = 0;    ///< bound of the error of its transparency
     double colour_off = 0;          ///< bound of the remaining error of its colour
+    double middle = 0, length = 0;  ///< in steps
+    double off = 0;                 ///< bound of the error that it adds where it lies
+
+    double most_transparent() const { return std::min(transparency + transparency_off, 1.0); }
   };
 
-  /// What the image shows behind a segment.
+  struct Total {
+    double apart = 0;         ///< difference between the image and the parts
+    double off = 0;           ///< bound of the difference between the parts and the integral
+    double off_of_parts = 0;  ///< without what is not sampled
+    double least_opaque = 0;
+  };
+
+  /// What the parts show behind a part.
   struct Behind {
     std::array<double, 4> shown{};
     double open = 0;  ///< transparency in front of the unknown rest; 0: nothing is unknown
@@ -161,72 +155,197 @@ class BoundWalk {
       }
       return most;
     }
-    void put_before(const Segment& segment) {
+    void put_before(const Part& part) {
       for (std::size_t k = 0; k < 4; ++k)
-        shown[k] = (1 - segment.transparency) * segment.plain[k] + segment.transparency * shown[k];
-      open *= segment.transparency;
+        shown[k] = (1 - part.transparency) * part.plain[k] + part.transparency * shown[k];
+      open *= part.transparency;
     }
   };
 
-  Segment segment_at(const Ray& ray, int k, double length) {
-    const Place middle = ray.at(float(k));
-    // A ray's last segment may be shorter or longer; the only one of a short ray has its sample in the middle.
-    const double before = std::min(0.5, length), behind = std::max(length - 0.5, length / 2);
-    const Place from = ray.at(float(double(k) - before)), to = ray.at(float(double(k) + behind));
-    const Variation near = field_.between(from, to);
-    const TransferTable& table = *scene_.table;
-    const AlongRay along = along_ray(ray, from, to, before + behind, near, double(table.scale()));
+  /// `open`: something unknown may follow.
+  Total total(bool ended, bool open) {
+    const double brightest = std::max(1.0, medium_.brightest());
+    Total found;
+    double unsampled = ended ? brightest : 0, transparency = 1, most_transparent = 1;
+    Behind behind;
+    behind.open = open ? 1 : 0;
+    for (auto part = parts_.rbegin(); part != parts_.rend(); ++part) {
+      part->off = part->transparency_off * behind.farthest_from(part->plain, brightest) + part->colour_off;
+      found.off_of_parts = part->off + part->most_transparent() * found.off_of_parts;
+      most_transparent *= part->most_transparent();
+      transparency *= part->transparency;
+      behind.put_before(*part);
+    }
+    found.off = found.off_of_parts + most_transparent * unsampled;
+    found.least_opaque = 1 - most_transparent;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double known = behind.shown[k] - image_.shown[k];
+      const double unknown = open ? (transparency - image_.transparency) * (k < 3 ? brightest : 1) : 0;
+      found.apart = std::max({found.apart, std::abs(known), std::abs(known + unknown)});
+    }
+    return found;
+  }
 
-    reader_.move_to(middle, {}, scene_.top);
-    const float value = reader_.sample();
-    const float place =
-        std::isnan(value) ? 0 : std::clamp((value - table.low()) * table.scale(), 0.0F, table.last());
-    const auto entry = std::min(std::size_t(place), table.entries() - 2);
-    const double steepest = double(std::max({near.slope[0], near.slope[1], near.slope[2]}));
-    const double rounding = 1e-5 * (steepest * double(table.scale()) + 1);
-    const MediumBounds& bounds = medium_.around(entry, along.slope * std::max(before, behind) + rounding);
-    Segment segment;
-    if (bounds.depth == 0 && bounds.glow == 0) return segment;
+  /// Whether finer parts could lower the bound by much.
+  bool worth_refining(const Total& found) const {
+    return found.off_of_parts > std::max(0.5 * found.apart, negligible) && parts_.size() < most_parts;
+  }
 
-    const float* const row = table.rows() + 8 * entry;
-    const double alpha = std::min(1.0, double(row[3]) + (double(place) - double(entry)) * double(row[7]));
-    const double transparency = alpha < 1 ? std::exp(length * std::log1p(-alpha)) : 0;
-    const double off = length * (off_middle(along, length, bounds.depth_range, bounds.depth_slope,
-                                            bounds.depth_curve, bounds.depth_kinks) +
-                                 bounds.depth_error + bounds.depth_slope * rounding);
-    segment.transparency = transparency;
-    for (std::size_t k = 0; k < 3 && alpha > 0; ++k)
-      segment.plain[k] = (double(row[k]) + (double(place) - double(entry)) * double(row[4 + k])) / alpha;
-    segment.plain[3] = 1;
-    // Neither image nor integral is more opaque than the densest value; depths bound the difference, too.
-    const double most_opaque = 1 - std::exp(-length * (bounds.depth + bounds.depth_error));
+  /// Divides the parts that make up most of `off`.
+  void refine(const Ray& ray, double off) {
+    const double much = 0.5 * off / double(parts_.size());
+    finer_.clear();
+    double in_front = 1;
+    for (const Part& part : parts_) {
+      if (in_front * part.off <= much) {
+        finer_.push_back(part);
+      } else {
+        for (int i = 0; i < division; ++i)
+          finer_.push_back(
+              part_at(ray, part.middle + ((i + 0.5) / division - 0.5) * part.length, part.length / division));
+      }
+      in_front *= part.most_transparent();
+    }
+    std::swap(parts_, finer_);
+  }
+
+  /// Composites the sample of a segment of `length` steps, and adds its parts. Returns a bound of the rounding
+  /// errors of the sample in the image.
+  double add_segment(const Ray& ray, int k, double length) {
+    // The sample of a ray that is shorter than a step lies in its middle; otherwise, the last segment ends half
+    // a step to one step behind its sample.
+    const double from = double(k) - (k == 0 ? std::min(0.5, length / 2) : 0.5), to = from + length;
+    const Variation near = field_.between(ray.at(from), ray.at(to));
+    const float value = sample(ray.at(float(k)));
+    const double place = place_of(value);
+    const double slope = along_part(ray, to - from, near, scale_).slope;
+    const MediumBounds& bounds = medium_.around(entry_of(place), slope + rounding_of(near));
+    if (bounds.depth == 0 && bounds.glow == 0) return 0;
+    add_parts(ray, from, to);
+    const double in_front = image_.transparency;
+    show_sample(place, length);
+    return in_front * (rounding_of_sample + rounding_in_image(place, length, rounding_of(near)));
+  }
+
+  /// Bounds the change of a sample's contribution if its place changes by `rounding`.
+  double rounding_in_image(double place, double length, double rounding) const {
+    const MediumBounds& bounds = medium_.around(entry_of(place), rounding);
+    const double depth = length * std::min(bounds.depth_range, bounds.depth_slope * rounding);
+    const double colour = std::min(bounds.colour_range, bounds.colour_slope * rounding);
+    return std::max(1.0, medium_.brightest()) * std::min(1.0, depth) +
+           (1 - std::exp(-length * bounds.depth)) * colour;
+  }
+
+  /// Composites what the image shows of a sample.
+  void show_sample(double place, double length) {
+    const std::size_t entry = entry_of(place);
+    const float* const row = table_.rows() + 8 * entry;
+    const double share = place - double(entry);
+    const double alpha = std::min(1.0, double(row[3]) + share * double(row[7]));
+    if (alpha <= 0) return;
+    std::array<double, 4> plain{0, 0, 0, 1};
+    for (std::size_t c = 0; c < 3; ++c) plain[c] = (double(row[c]) + share * double(row[4 + c])) / alpha;
+    image_.put_behind(plain, alpha < 1 ? std::exp(length * std::log1p(-alpha)) : 0);
+  }
+
+  /// Divides a stretch of a ray at the faces of cells, and into parts of at most a quarter of a step.
+  void add_parts(const Ray& ray, double from, double to) {
+    cuts_.assign({from, to});
+    const auto low = ray.at(from), high = ray.at(to);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto [first, last] = std::minmax(low[axis], high[axis]);
+      for (double face = std::ceil(first); face <= std::floor(last) && last > first; ++face) {
+        const double cut = (face - double(ray.start[axis])) / double(ray.step[axis]);
+        if (cut > from && cut < to) cuts_.push_back(cut);
+      }
+    }
+    std::ranges::sort(cuts_);
+    for (std::size_t i = 0; i + 1 < cuts_.size(); ++i) {
+      const double whole = cuts_[i + 1] - cuts_[i];
+      const int count = std::max(1, int(std::ceil(whole / longest_part)));
+      for (int j = 0; j < count; ++j)
+        parts_.push_back(part_at(ray, cuts_[i] + (j + 0.5) * whole / count, whole / count));
+    }
+  }
+
+  Part part_at(const Ray& ray, double middle, double length) {
+    const std::array<double, 3> position = ray.at(middle);
+    const Variation& near = field_.at(position);
+    const AlongPart along = along_part(ray, length, near, scale_);
+    const double place = place_of(sample({float(position[0]), float(position[1]), float(position[2])}));
+    const double rounding = rounding_of(near);
+    const MediumBounds& bounds = medium_.around(entry_of(place), along.slope / 2 + rounding);
+    Part part;
+    part.middle = middle;
+    part.length = length;
+    if (bounds.depth == 0 && bounds.glow == 0) return part;
+
+    const MediumPoint medium = medium_.at(place);
+    part.transparency = std::exp(-length * medium.depth);
+    for (std::size_t k = 0; k < 3; ++k) part.plain[k] = medium.colour[k];
+    part.plain[3] = 1;
+    const double off = length * (off_middle(along, bounds.depth_range, bounds.depth_slope, bounds.depth_curve,
+                                            bounds.depth_kinks) +
+                                 std::min(bounds.depth_range, bounds.depth_slope * rounding));
+    // Neither the part nor the integral is more opaque than the densest value; depths bound the difference,
+    // too.
+    const double most_opaque = 1 - std::exp(-length * bounds.depth);
     // Infinite or NaN where slopes are steep.
-    const double by_depth = transparency * std::expm1(off);
-    segment.transparency_off = by_depth <= most_opaque ? by_depth : most_opaque;
-    segment.colour_off =
-        colour_off(along, length, bounds) + length * (bounds.colour_error + bounds.glow) + rounding_of_sample;
-    return segment;
+    const double by_depth = part.transparency * std::expm1(off);
+    part.transparency_off = by_depth <= most_opaque ? by_depth : most_opaque;
+    part.colour_off = colour_off(along, length, bounds, rounding) + length * bounds.glow;
+    return part;
   }
 
   /// Bounds the integral of X - X_m over opacity.
-  static double colour_off(const AlongRay& along, double length, const MediumBounds& bounds) {
-    const double opacity = 1 - std::exp(-length * bounds.depth);
+  static double colour_off(const AlongPart& along, double length, const MediumBounds& bounds, double rounding) {
+    const double depth = length * bounds.depth;
+    const double opacity = 1 - std::exp(-depth);
     const double by_range = bounds.colour_range * opacity;
-    if (length != 1) return by_range;
-    const double off = off_middle(along, 1, bounds.colour_range, bounds.colour_slope, bounds.colour_curve,
-                                  bounds.colour_kinks);
-    // Bound of the change of opacity per step along the segment.
-    const double changes = bounds.depth_slope * along.slope + bounds.depth * bounds.depth;
-    const double by_slopes = bounds.depth * off + bounds.colour_slope * along.slope * changes / 12;
+    const double off =
+        off_middle(along, bounds.colour_range, bounds.colour_slope, bounds.colour_curve, bounds.colour_kinks) +
+        bounds.colour_slope * rounding;
+    // Bound of the change of opacity along the part.
+    const double changes = length * bounds.depth_slope * along.slope + depth * depth;
+    const double by_slopes = depth * off + bounds.colour_slope * along.slope * changes / 12;
     return std::min(by_range, std::isfinite(by_slopes) ? by_slopes : by_range);
   }
 
+  float sample(const Place& position) {
+    reader_.move_to(position, {}, scene_.top);
+    return reader_.sample();
+  }
+  /// In entries of the images' function.
+  double place_of(float value) const {
+    if (std::isnan(value)) return 0;
+    return std::clamp((double(value) - double(table_.low())) * scale_, 0.0, double(table_.last()));
+  }
+  std::size_t entry_of(double place) const { return std::min(std::size_t(place), table_.entries() - 2); }
+  /// How far a sample may be from its place because of rounded positions and values.
+  double rounding_of(const Variation& near) const {
+    const double steepest = double(std::max({near.slope[0], near.slope[1], near.slope[2]}));
+    return 1e-5 * steepest * scale_ + 3e-7 * (std::abs(double(table_.low())) * scale_ + double(table_.last())) +
+           1e-6;
+  }
+
+  static constexpr double longest_part = 0.25;
+  /// Parts are divided while a bound is above this, for so many rounds and into so many parts at most.
+  static constexpr double negligible = 1e-5;
+  static constexpr int most_rounds = 8;
+  static constexpr int division = 4;
+  static constexpr std::size_t most_parts = 4096;
+
   FieldReader<FieldType> reader_;
   const Scene& scene_;
+  const TransferTable& table_;
+  const double scale_;
   const FieldVariation& field_;
   const MediumVariation& medium_;
   float termination_;
-  std::vector<Segment> segments_;  ///< of the current ray
+  Composite image_;          ///< of the current ray, as the image shows it
+  std::vector<Part> parts_;  ///< of the current ray
+  std::vector<Part> finer_;
+  std::vector<double> cuts_;
 };
 
 /// The parts of a request that bounds depend on.

@@ -2,8 +2,16 @@
 // A certified bound of the error of an image against the volume rendering integral, for every pixel.
 //
 // The samples of the image cover whole rays (RaySteps::cover_whole_ray). A ray is divided into segments, one
-// step long, with a sample in the middle of each. Let R be the integral from a segment on, t the transparency
-// of the segment and c the colour that it adds; primes denote the corresponding values of the image:
+// step long, with a sample in the middle of each. To bound the error with its sign, each segment is divided
+// again: where the ray crosses faces of cells, and into parts of at most a quarter of a step. A part lies in
+// one cell, where the field along the ray is a cubic. The parts' medium, sampled in their middles, composites
+// to a finer image R' of the ray. The bound is
+//
+//     |image - R'|  +  a bound of |R' - R|
+//
+// for the integral R. In the first term the errors of an image cancel along a ray as they do in its pixel. Only
+// the second term adds magnitudes: let R be the integral from a part on, t the transparency of the part and c
+// the colour that it adds; primes denote the corresponding values of R'. Then
 //
 //     R_i - R'_i = (c_i - c'_i) + (t_i - t'_i) R'_(i+1) + t_i (R_(i+1) - R'_(i+1))
 //
@@ -12,18 +20,16 @@
 //
 //     |(c - c') + (t - t') R'| <= |t - t'| |R' - X_m| + |integral of (X - X_m) over opacity|
 //
-// Both terms follow from how much the optical depth K and X may vary on a segment. Let G bound the slope of the
-// field along the ray, V the variation of that slope, and W that variation weighted by the Peano kernel of the
-// midpoint rule, (1/2 - |s|)^2 / 2 at s steps from the middle (field_variation.h). Over the values that the
-// segment may have, let k be the steepest slope of K, q its greatest curvature between kinks, and j the sum of
-// its kinks (medium_variation.h). Then the difference between the depth and that of its middle is at most the
-// least of
+// Both terms follow from how much the optical depth K and X may vary on a part. Let G bound the slope of the
+// field along the part, and V its second derivative (field_variation.h). Over the values that the part may
+// have, let k be the steepest slope of K, q its greatest curvature between kinks, and j the sum of its kinks
+// (medium_variation.h). Then the difference between the depth and that of its middle is at most the least of
 //
-//     the range of K        k G / 4        k W + q G^2 / 24 + j (G + n V) / 8
+//     the range of K        k G / 4        k V / 24 + q G^2 / 24 + j (G + 2 V) / 8
 //
-// The last is the error of the midpoint rule, the integral of the kernel over the changes of the derivative:
-// where the field bends, where K bends, and where the field crosses a kink of K. In the cells of the segment
-// this happens at most n + 1 times, all but once with a slope of at most V. The same holds for X.
+// The last is the error of the midpoint rule, the integral of its Peano kernel over the changes of the
+// derivative: where the field bends, where K bends, and where the field crosses a kink of K, at most three
+// times, all but once with a slope of at most V. The same holds for X.
 #pragma once
 
 #include <memory>

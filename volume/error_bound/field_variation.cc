@@ -67,12 +67,11 @@ class HeldTexels {
   LatticePoint low_{}, high_{};
 };
 
-/// The texels that a row of cubes depends on: those of its cells, and one more on each side.
+/// The texels of the cells of a row of cubes.
 class RowOfTexels {
  public:
   /// Begins at lattice point `low` and covers `cells` cells along x.
-  RowOfTexels(const HeldTexels& texels, const LatticePoint& low, int cells)
-      : low_{low[0] - 1, low[1] - 1, low[2] - 1}, width_(cells + 3) {
+  RowOfTexels(const HeldTexels& texels, const LatticePoint& low, int cells) : low_(low), width_(cells + 1) {
     values_.reserve(std::size_t(width_) * rows * rows);
     for (int z = 0; z < rows; ++z)
       for (int y = 0; y < rows; ++y)
@@ -84,7 +83,7 @@ class RowOfTexels {
   }
 
  private:
-  static constexpr int rows = FieldVariation::cube_cells + 3;
+  static constexpr int rows = FieldVariation::cube_cells + 1;
 
   LatticePoint low_;
   int width_;
@@ -110,16 +109,9 @@ void raise_by_cell(const RowOfTexels& texels, const LatticePoint& p, Variation& 
         const LatticePoint edge = moved(moved(p, a, i), b, j);
         raise(variation.slope[axis], texels.at(moved(edge, axis, 1)) - texels.at(edge));
       }
-    // The faces across the axis: the derivative along it jumps there; the mixed derivative of the other two is
-    // `twist`.
+    // On the faces across the axis: the mixed derivative of the other two.
     for (const int side : {0, 1}) {
       const LatticePoint face = moved(p, axis, side);
-      for (const int i : {0, 1})
-        for (const int j : {0, 1}) {
-          const LatticePoint at = moved(moved(face, a, i), b, j);
-          raise(variation.bend[axis], (texels.at(moved(at, axis, 1)) - texels.at(at)) -
-                                          (texels.at(at) - texels.at(moved(at, axis, -1))));
-        }
       raise(variation.twist, (texels.at(moved(moved(face, a, 1), b, 1)) - texels.at(moved(face, a, 1))) -
                                  (texels.at(moved(face, b, 1)) - texels.at(face)));
     }
@@ -154,27 +146,34 @@ FieldVariation::FieldVariation(const BrickStore& store) {
   });
 }
 
-Variation FieldVariation::between(const std::array<float, 3>& a, const std::array<float, 3>& b) const {
+int FieldVariation::cube_of(std::size_t axis, double position) const {
+  const double clamped = std::clamp(position, -1e6, 1e9) / cube_cells;
+  return std::clamp(int(std::floor(clamped)) - first_[axis], 0, counts_[axis] - 1);
+}
+
+const Variation& FieldVariation::cube(int x, int y, int z) const {
+  const std::size_t row = std::size_t(z) * std::size_t(counts_[1]) + std::size_t(y);
+  return cubes_[row * std::size_t(counts_[0]) + std::size_t(x)];
+}
+
+const Variation& FieldVariation::at(const std::array<double, 3>& position) const {
+  return cube(cube_of(0, position[0]), cube_of(1, position[1]), cube_of(2, position[2]));
+}
+
+Variation FieldVariation::between(const std::array<double, 3>& a, const std::array<double, 3>& b) const {
   std::array<int, 3> low{}, high{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto cube = [&](float at) {
-      const float clamped = std::clamp(at, -1e6F, 1e9F) / float(cube_cells);
-      return std::clamp(int(std::floor(clamped)) - first_[axis], 0, counts_[axis] - 1);
-    };
-    low[axis] = cube(std::min(a[axis], b[axis]));
-    high[axis] = cube(std::max(a[axis], b[axis]));
+    low[axis] = cube_of(axis, std::min(a[axis], b[axis]));
+    high[axis] = cube_of(axis, std::max(a[axis], b[axis]));
   }
   Variation all;
   for (int z = low[2]; z <= high[2]; ++z)
     for (int y = low[1]; y <= high[1]; ++y)
       for (int x = low[0]; x <= high[0]; ++x) {
-        const std::size_t row = std::size_t(z) * std::size_t(counts_[1]) + std::size_t(y);
-        const Variation& cube = cubes_[row * std::size_t(counts_[0]) + std::size_t(x)];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          all.slope[axis] = std::max(all.slope[axis], cube.slope[axis]);
-          all.bend[axis] = std::max(all.bend[axis], cube.bend[axis]);
-        }
-        all.twist = std::max(all.twist, cube.twist);
+        const Variation& one = cube(x, y, z);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          all.slope[axis] = std::max(all.slope[axis], one.slope[axis]);
+        all.twist = std::max(all.twist, one.twist);
       }
   return all;
 }

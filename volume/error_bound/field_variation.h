@@ -2,8 +2,7 @@
 // How fast a trilinear field may change: bounds over cubes of a few cells.
 //
 // In a cell, the derivative along an axis interpolates the differences along its four edges, and a mixed second
-// derivative the mixed differences of two faces; pure second derivatives are 0. From cell to cell the
-// derivative across their face jumps by an interpolation of the texels' second differences.
+// derivative the mixed differences of two faces; pure second derivatives are 0.
 #pragma once
 
 #include <array>
@@ -17,7 +16,6 @@ namespace understudy::volume {
 /// Bounds over a cube of cells, in units of the texel type. Infinite if a texel is NaN.
 struct Variation {
   std::array<float, 3> slope{};  ///< the greatest derivative along each axis, per cell
-  std::array<float, 3> bend{};   ///< the greatest jump of that derivative at a face in or around the cube
   float twist = 0;               ///< the greatest mixed second derivative, per cell squared
 };
 
@@ -28,12 +26,18 @@ class FieldVariation {
   /// Covers the cells that the store holds; beyond the lattice's ends the field is constant.
   explicit FieldVariation(const BrickStore& store);
 
+  /// Bounds over the cube of the cell that holds a position, in lattice coordinates.
+  const Variation& at(const std::array<double, 3>& position) const;
   /// Bounds over all cells that intersect the box between two positions, in lattice coordinates.
-  Variation between(const std::array<float, 3>& a, const std::array<float, 3>& b) const;
+  Variation between(const std::array<double, 3>& a, const std::array<double, 3>& b) const;
 
   std::size_t bytes() const { return cubes_.size() * sizeof(Variation); }
 
  private:
+  /// The cube along an axis that holds a coordinate, or the nearest one.
+  int cube_of(std::size_t axis, double position) const;
+  const Variation& cube(int x, int y, int z) const;
+
   std::array<int, 3> first_{};   ///< the first cube, in cubes from the lattice's low corner
   std::array<int, 3> counts_{};  ///< numbers of cubes
   std::vector<Variation> cubes_;

@@ -35,7 +35,6 @@ struct MediumVariation::Piece {
   PlainColour slope_low{}, slope_high{};  ///< X' at its ends
   double colour_curve = 0;                ///< the greatest |X''|
   double glow = 0;
-  double depth_error = 0, colour_error = 0;
 };
 
 namespace {
@@ -45,11 +44,6 @@ constexpr double steepest_counted = 1e9;
 
 double capped(double slope) {
   return std::clamp(slope, -steepest_counted, steepest_counted);
-}
-
-/// The greatest distance of a convex function below its chord: a quarter of the change of its slope.
-double below_chord(double slope_low, double slope_high) {
-  return std::abs(slope_high - slope_low) / 4;
 }
 
 double slope_of_depth(double step, double opacity, double rise) {
@@ -89,8 +83,7 @@ void set_colours(const std::array<double, 4>& low, const std::array<double, 4>& 
 
 /// `in_function`: entries of `function` per entry of the images' function.
 template <typename Piece>
-Piece piece_of(const TransferFunction& function, double step, const TransferFunction& of_images,
-               std::size_t entry, double in_function) {
+Piece piece_of(const TransferFunction& function, double step, std::size_t entry, double in_function) {
   const auto low = entry_at(function, double(entry) * in_function);
   const auto high = entry_at(function, double(entry + 1) * in_function);
   Piece piece;
@@ -103,25 +96,6 @@ Piece piece_of(const TransferFunction& function, double step, const TransferFunc
       std::max(piece.depth_slope_low * piece.depth_slope_low, piece.depth_slope_high * piece.depth_slope_high) /
       step;
   set_colours(low, high, step, piece);
-
-  // The opacity of the images' function is linear in between, so its depth is convex as well; both have the
-  // same ends, up to float rounding.
-  constexpr double rounding = 1.2e-7;
-  const double seen_low = std::min(double(of_images.entries[entry][3]), 1.0);
-  const double seen_high = std::min(double(of_images.entries[entry + 1][3]), 1.0);
-  const double most_seen = std::max(seen_low, seen_high);
-  const double of_ends = most_seen < 1 ? rounding * most_seen / (1 - most_seen) : 0;
-  piece.depth_error = of_ends + std::max(below_chord(piece.depth_slope_low, piece.depth_slope_high),
-                                         below_chord(slope_of_depth(1, seen_low, seen_high - seen_low),
-                                                     slope_of_depth(1, seen_high, seen_high - seen_low)));
-  // A step shows X (1 - exp(-K)): the deviations of both factors, and of a product of linear ones, from linear.
-  const double off = greatest_channel(colour_difference(piece.slope_high, piece.slope_low)) / 4;
-  piece.colour_error =
-      rounding +
-      std::min(most_seen, piece.depth_error) *
-          std::max(greatest_channel(piece.low), greatest_channel(piece.high)) +
-      most_seen * off +
-      greatest_channel(colour_difference(piece.high, piece.low)) * std::abs(seen_high - seen_low) / 4;
   return piece;
 }
 
@@ -150,7 +124,7 @@ void fill_invisible(std::vector<Piece>& pieces) {
 struct Extremes {
   double depth = 0, least_depth = infinite, depth_slope = 0, colour_slope = 0;
   double depth_curve = 0, colour_curve = 0;
-  double glow = 0, depth_error = 0, colour_error = 0;
+  double glow = 0;
   PlainColour low{infinite, infinite, infinite}, high{-infinite, -infinite, -infinite};
 
   void add(const Extremes& other) {
@@ -161,8 +135,6 @@ struct Extremes {
     depth_curve = std::max(depth_curve, other.depth_curve);
     colour_curve = std::max(colour_curve, other.colour_curve);
     glow = std::max(glow, other.glow);
-    depth_error = std::max(depth_error, other.depth_error);
-    colour_error = std::max(colour_error, other.colour_error);
     for (std::size_t k = 0; k < 3; ++k) {
       low[k] = std::min(low[k], other.low[k]);
       high[k] = std::max(high[k], other.high[k]);
@@ -180,8 +152,6 @@ Extremes extremes_of(const Piece& piece, const Piece* before) {
   all.depth_curve = piece.depth_curve;
   all.colour_curve = piece.colour_curve;
   all.glow = piece.glow;
-  all.depth_error = piece.depth_error;
-  all.colour_error = piece.colour_error;
   for (std::size_t k = 0; k < 3; ++k) {
     all.low[k] = std::min(piece.low[k], piece.high[k]);
     all.high[k] = std::max(piece.low[k], piece.high[k]);
@@ -259,8 +229,6 @@ class MediumVariation::Ranges {
     bounds.colour_slope = all.colour_slope;
     bounds.colour_curve = all.colour_curve;
     bounds.glow = all.glow;
-    bounds.depth_error = all.depth_error;
-    bounds.colour_error = all.colour_error;
     Kinks kinks = kinks_[end - 1];
     kinks.add(kinks_[first], -1);
     if (below) kinks.add(first_kinks_);
@@ -278,15 +246,18 @@ class MediumVariation::Ranges {
 
 MediumVariation::MediumVariation(const TransferFunction& function, double step,
                                  const TransferFunction& of_images)
-    : entries_(of_images.entries.size()) {
-  const double in_function = double(function.entries.size() - 1) / double(entries_ - 1);
+    : function_(function),
+      step_(step),
+      in_function_(double(function.entries.size() - 1) / double(of_images.entries.size() - 1)),
+      entries_(of_images.entries.size()) {
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i + 1 < entries_; ++i) {
-    pieces.push_back(piece_of<Piece>(function, step, of_images, i, in_function));
+    pieces.push_back(piece_of<Piece>(function, step, i, in_function_));
     brightest_ =
         std::max({brightest_, greatest_channel(pieces.back().low), greatest_channel(pieces.back().high)});
   }
   fill_invisible(pieces);
+  for (const Piece& piece : pieces) unseen_.push_back({piece.low, piece.high});
   const Ranges ranges(pieces);
   constexpr double least_radius = 1.0 / 16;
   radii_.push_back(least_radius);
@@ -300,6 +271,18 @@ MediumVariation::MediumVariation(const TransferFunction& function, double step,
                                           std::size_t(std::ceil(std::min(high, last))), low<0, high> last));
     }
   });
+}
+
+MediumPoint MediumVariation::at(double place) const {
+  const auto entry = entry_at(function_, place * in_function_);
+  const double opacity = std::min(entry[3], 1.0);
+  MediumPoint point{-step_ * std::log1p(-opacity), {}};
+  const auto piece = std::min(std::size_t(place), entries_ - 2);
+  for (std::size_t k = 0; k < 3; ++k)
+    point.colour[k] = opacity > 0 ? entry[k] / opacity
+                                  : std::lerp(unseen_[piece].low[k], unseen_[piece].high[k],
+                                              std::clamp(place - double(piece), 0.0, 1.0));
+  return point;
 }
 
 const MediumBounds& MediumVariation::around(std::size_t entry, double radius) const {

@@ -32,9 +32,13 @@ struct MediumBounds {
   double colour_slope = 0;
   double colour_curve = 0;
   double colour_kinks = 0;
-  double glow = 0;          ///< the greatest colour that a step adds where opacity is 0
-  double depth_error = 0;   ///< greatest deviation of the images' function from K between its entries
-  double colour_error = 0;  ///< and from the colour of a step of the medium
+  double glow = 0;  ///< the greatest colour that a step adds where opacity is 0
+};
+
+/// The medium at one value.
+struct MediumPoint {
+  double depth = 0;                ///< K, infinite where it is opaque
+  std::array<double, 3> colour{};  ///< X
 };
 
 class MediumVariation {
@@ -45,13 +49,24 @@ class MediumVariation {
   /// Bounds over at least all values up to `radius` away from those between entries `entry` and `entry` + 1.
   const MediumBounds& around(std::size_t entry, double radius) const;
 
+  /// `place`: in entries of the function that images use, within them.
+  MediumPoint at(double place) const;
+
   /// The greatest channel of any plain colour.
   double brightest() const { return brightest_; }
 
  private:
   struct Piece;
   class Ranges;
+  /// Plain colours at the ends of a piece where nothing is visible.
+  struct Unseen {
+    std::array<double, 3> low{}, high{};
+  };
 
+  TransferFunction function_;
+  double step_ = 1;
+  double in_function_ = 1;  ///< entries of `function_` per entry of the images' function
+  std::vector<Unseen> unseen_;
   std::size_t entries_ = 0;
   double brightest_ = 0;
   std::vector<double> radii_;                         ///< ascending

@@ -35,7 +35,7 @@ enum class FrameEnd : std::int32_t {
   destroy
 };
 
-constexpr std::uint32_t core_abi = 3;
+constexpr std::uint32_t core_abi = 4;
 
 /// The format that the application requested for a context on a GL server.
 struct RemoteContextFormat {
@@ -96,8 +96,9 @@ struct CoreServices {
   /// Called before the real call that ends or publishes a frame (swap, finish, WaitGL): writes everything
   /// pending to the framebuffer.
   void (*before_frame_end)(FrameEnd kind) = nullptr;
-  /// After the real swap or finish returned.
-  void (*after_frame_end)(FrameEnd kind) = nullptr;
+  /// After the real swap or finish returned. `window` is the drawable of GLX that was swapped as a whole,
+  /// whether or not the thread's context draws into it; otherwise 0.
+  void (*after_frame_end)(FrameEnd kind, std::uintptr_t window) = nullptr;
   /// Versions of the GL server that makes this process's calls; zeros if there is none.
   RemoteVersions (*remote_versions)() = nullptr;
 };

@@ -133,14 +133,16 @@ UNDERSTUDY_ENTRY Bool glXMakeCurrentReadSGI(Display* display, GLXDrawable draw, 
 
 UNDERSTUDY_ENTRY void glXSwapBuffers(Display* display, GLXDrawable drawable) {
   static constinit RealFunction<void (*)(Display*, GLXDrawable)> real{glx, "glXSwapBuffers"};
-  end_frame(FrameEnd::swap, [&] { real(display, drawable); });
+  end_frame(
+      FrameEnd::swap, [&] { real(display, drawable); }, drawable);
 }
 
 UNDERSTUDY_ENTRY int64_t glXSwapBuffersMscOML(Display* display, GLXDrawable drawable, int64_t target_msc,
                                               int64_t divisor, int64_t remainder) {
   static constinit RealFunction<int64_t (*)(Display*, GLXDrawable, int64_t, int64_t, int64_t)> real{
       glx, "glXSwapBuffersMscOML"};
-  return end_frame(FrameEnd::swap, [&] { return real(display, drawable, target_msc, divisor, remainder); });
+  return end_frame(
+      FrameEnd::swap, [&] { return real(display, drawable, target_msc, divisor, remainder); }, drawable);
 }
 
 UNDERSTUDY_ENTRY void glXCopySubBufferMESA(Display* display, GLXDrawable drawable, int x, int y, int width,

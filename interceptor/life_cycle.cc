@@ -105,11 +105,11 @@ void before_frame_end(FrameEnd kind) {
   services->before_frame_end(kind);
 }
 
-void after_frame_end(FrameEnd kind) {
+void after_frame_end(FrameEnd kind, std::uintptr_t window) {
   const CoreServices* services = core();
   if (services == nullptr || entry_thread.level > 0 || entry_thread.current.context == 0) return;
   const InsideCore inside;
-  services->after_frame_end(kind);
+  services->after_frame_end(kind, window);
 }
 
 void before_destroy(const ContextKey& key) {

@@ -47,19 +47,21 @@ auto make_current(const WantedContext& wanted, RealCall real_call) {
   return result;
 }
 
-/// Tells the core that this thread's frame is about to end, or has ended. Does nothing without core or context.
+/// Tells the core that this thread's frame is about to end, or has ended; `window` as in CoreServices. Does
+/// nothing without core or context.
 void before_frame_end(FrameEnd kind);
-void after_frame_end(FrameEnd kind);
+void after_frame_end(FrameEnd kind, std::uintptr_t window = 0);
 
 /// Wraps a call that ends or publishes a frame: everything pending is written to the framebuffer before it.
 template <class RealCall>
-auto end_frame(FrameEnd kind, RealCall real_call) {
+auto end_frame(FrameEnd kind, RealCall real_call, std::uintptr_t window = 0) {
   struct Ended {
     FrameEnd kind;
-    ~Ended() { after_frame_end(kind); }
+    std::uintptr_t window;
+    ~Ended() { after_frame_end(kind, window); }
   };
   before_frame_end(kind);
-  const Ended ended{kind};
+  const Ended ended{kind, window};
   return real_call();
 }
 

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -76,7 +75,10 @@ class Core {
         session_(std::make_shared<spu::RenderSession>(std::move(options))) {
     if (!options_.remote.empty()) server_ = std::make_unique<spu::ServerConnection>(options_.remote, front_);
     if (options_.frame_latency > 0)
-      redraw_.emplace([] { spu::process_counters().windows_asked.fetch_add(1, std::memory_order_relaxed); });
+      redraw_.emplace([session = session_.get()](std::uintptr_t window) {
+        session->windows().asked(window);
+        spu::process_counters().windows_asked.fetch_add(1, std::memory_order_relaxed);
+      });
   }
 
   const EntryServices& entry() const { return entry_; }
@@ -102,10 +104,11 @@ class Core {
       return;
     }
     Member& member = member_of(context, share, server_ ? spu::remote_driver() : *thread.driver);
-    member.window = system == WindowSystem::glx ? drawable : 0;
     spu::Chain& chain = member.chain;
-    auto* const volumes = chain.find<spu::VolumeUnit>();
-    if (volumes != nullptr && system == WindowSystem::osmesa) volumes->never_defer_window_depth();
+    if (auto* const volumes = chain.find<spu::VolumeUnit>()) {
+      if (system == WindowSystem::osmesa) volumes->never_defer_window_depth();
+      volumes->draws_into(system == WindowSystem::glx ? drawable : 0);
+    }
     chain.make_current();
     // Contexts that share objects with this one may have uploaded volumes since its last frame.
     chain.frame_ended(spu::FrameEnd::make_current);
@@ -124,11 +127,9 @@ class Core {
     if (gone) gone->chain.abandon();
   }
 
-  void frame_ended(spu::FrameEnd kind) {
-    if (spu::Chain* chain = spu::Chain::current()) {
-      chain->frame_ended(kind);
-      if (redraw_ && kind == spu::FrameEnd::swap) window_shown(window_of(*chain));
-    }
+  void frame_ended(spu::FrameEnd kind, std::uintptr_t window) {
+    if (spu::Chain* chain = spu::Chain::current()) chain->frame_ended(kind);
+    if (redraw_ && window != 0) window_shown(window);
     if (reports_itself()) spu::write_report_when_due(options_.report);
   }
 
@@ -160,7 +161,6 @@ class Core {
   struct Member {
     std::shared_ptr<spu::ShareGroup> group;
     spu::Chain chain;
-    std::atomic<std::uintptr_t> window = 0;  ///< the X window that it draws into, or 0
   };
 
   Member& member_of(std::uintptr_t context, std::uintptr_t share, const spu::DispatchTable& driver) {
@@ -185,17 +185,11 @@ class Core {
     return *member;
   }
 
-  std::uintptr_t window_of(const spu::Chain& chain) {
-    const std::scoped_lock lock(mutex_);
-    for (const auto& [context, member] : contexts_)
-      if (member && &member->chain == &chain) return member->window;
-    return 0;
-  }
-
   void window_shown(std::uintptr_t window) {
-    if (getpid() != process_) return session_->window_can_be_asked(false);
-    session_->window_can_be_asked(redraw_->can_ask(window));
-    redraw_->frame_shown(window, session_->take_behind());
+    // A forked child has no thread that asks.
+    const bool can_ask = getpid() == process_ && redraw_->can_ask(window);
+    const spu::LateViews late = session_->windows().frame_ended(window, can_ask);
+    if (can_ask) redraw_->frame_shown(window, late);
   }
 
   static void install(const spu::DispatchTable* table);
@@ -288,8 +282,8 @@ spu::FrameEnd frame_end(FrameEnd kind) {
   }
 }
 
-void after_frame_end(FrameEnd kind) {
-  guarded([&] { core->frame_ended(frame_end(kind)); });
+void after_frame_end(FrameEnd kind, std::uintptr_t window) {
+  guarded([&] { core->frame_ended(frame_end(kind), window); });
 }
 
 constinit CoreServices services;

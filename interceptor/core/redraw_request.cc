@@ -4,6 +4,8 @@
 #include <dlfcn.h>
 #include <xcb/xcb.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <exception>
 #include <thread>
@@ -16,6 +18,7 @@ namespace {
 
 /// Longer than the time of a frame while somebody turns the camera.
 constexpr std::chrono::milliseconds pause_before_asking{60};
+constexpr std::size_t most_known_windows = 64;
 
 template <class Function>
 Function* function(void* library, const char* name) {
@@ -106,55 +109,73 @@ class RedrawRequest::Display {
   xcb_connection_t* connection_ = nullptr;
 };
 
-RedrawRequest::RedrawRequest(std::function<void()> asked) : asked_(std::move(asked)) {}
+RedrawRequest::RedrawRequest(std::function<void(std::uintptr_t)> asked) : asked_(std::move(asked)) {}
 RedrawRequest::~RedrawRequest() = default;
 
 bool RedrawRequest::can_ask(std::uintptr_t window) {
   const std::lock_guard lock(mutex_);
   if (window == 0) return false;
-  if (window != known_window_) {
-    known_window_ = window;
-    if (display_ == nullptr) display_ = Display::open();
-    knows_ = display_ != nullptr && display_->has(window);
-  }
-  return knows_;
+  const auto known = std::ranges::find(known_, window, &KnownWindow::window);
+  if (known != known_.end()) return known->can_be_asked;
+  if (display_ == nullptr) display_ = Display::open();
+  if (known_.size() == most_known_windows) known_.erase(known_.begin());
+  known_.push_back({window, display_ != nullptr && display_->has(window)});
+  return known_.back().can_be_asked;
 }
 
-void RedrawRequest::frame_shown(std::uintptr_t window, bool behind) {
+void RedrawRequest::frame_shown(std::uintptr_t window, spu::LateViews late) {
   const std::lock_guard lock(mutex_);
-  if (due_ && due_->window == window) due_.reset();
-  if (!behind) return;
-  due_ = {window, std::chrono::steady_clock::now() + pause_before_asking};
-  // The thread sleeps until the program exits, and touches nothing that is torn down at exit.
-  if (!has_thread_) {
-    const compositor::BlockedSignals blocked;
-    std::thread([this] {
-      try {
-        ask_when_due();
-      } catch (const std::exception&) {
-        // No more requests: an image that is behind stays so until the program draws.
-      }
-    }).detach();
-    has_thread_ = true;
+  const auto due = std::ranges::find(due_, window, &Due::window);
+  if (late == spu::LateViews::none) {
+    if (due != due_.end()) due_.erase(due);
+    return;
   }
+  const auto at = std::chrono::steady_clock::now() + pause_before_asking;
+  if (due == due_.end()) {
+    due_.push_back({window, at});
+  } else if (late == spu::LateViews::of_this_frame) {
+    due->at = at;
+  }
+  start_thread();
   changed_.notify_one();
+}
+
+void RedrawRequest::start_thread() {
+  if (std::exchange(has_thread_, true)) return;
+  const compositor::BlockedSignals blocked;
+  // The thread sleeps until the program exits, and touches nothing that is torn down at exit.
+  std::thread([this] {
+    try {
+      ask_when_due();
+    } catch (const std::exception&) {
+      // No more requests: an image that is late stays so until the program draws.
+    }
+  }).detach();
 }
 
 void RedrawRequest::ask_when_due() {
   std::unique_lock lock(mutex_);
   for (;;) {
-    if (!due_) {
+    ask_those_due();
+    if (due_.empty()) {
       changed_.wait(lock);
-    } else if (std::chrono::steady_clock::now() < due_->at) {
-      changed_.wait_until(lock, std::chrono::steady_clock::time_point(due_->at));
-    } else if (!display_->expose(due_->window)) {
-      due_.reset();
     } else {
-      // Busy programs may discard events, so the request is repeated until the program draws.
-      due_->at = std::chrono::steady_clock::now() + 16 * pause_before_asking;
-      asked_();
+      const auto next = std::ranges::min(due_, {}, &Due::at).at;
+      changed_.wait_until(lock, next);
     }
   }
+}
+
+void RedrawRequest::ask_those_due() {
+  const auto now = std::chrono::steady_clock::now();
+  std::erase_if(due_, [&](Due& due) {
+    if (now < due.at) return false;
+    if (!display_->expose(due.window)) return true;
+    // Busy programs may discard events, so the request is repeated until the program draws.
+    due.at = now + 16 * pause_before_asking;
+    asked_(due.window);
+    return false;
+  });
 }
 
 }  // namespace understudy::interceptor

@@ -28,7 +28,7 @@ struct Stages {
         composer(context, session, account),
         slices(uploader, classifier, composer),
         ray_casters(context, group, session, programs, uploader, classifier, composer, account),
-        source(context, session, ray_casters, account),
+        source(context, session, views, ray_casters, account),
         presentation(context, session, source, account),
         verifier(context, session, account),
         depth(context, session, account),
@@ -39,6 +39,7 @@ struct Stages {
   Stages& operator=(const Stages&) = delete;
 
   FrameAccount account;
+  DrawnViews views;
   ProgramReader programs;
   Recogniser recogniser;
   Uploader uploader;

@@ -59,7 +59,23 @@ Stages& VolumeUnit::stages() {
         std::make_unique<Stages>(context(), chain().group(), *session_, volumes_, samplers(), this, [this] {
           if (!run_open()) chain().set_phase(resting_phase());
         });
+  stages_->views.draws_into(window_);
   return *stages_;
+}
+
+std::optional<View> VolumeUnit::note_view(const Run& run) {
+  if (session_->options().frame_latency == 0) return std::nullopt;
+  const GLuint texture = run.volume_texture();
+  const std::uint64_t frame = session_->windows().frame(window_);
+  DrawnViews& views = stages().views;
+  if (run.inside_begin) {
+    // OpenGL must not be queried.
+    views.drawn_somewhere(texture, frame);
+    return std::nullopt;
+  }
+  const View view = current_view(context(), texture, window_);
+  views.drawn(view, frame);
+  return view;
 }
 
 void VolumeUnit::fill(Phase phase, DispatchTable& table) {
@@ -81,15 +97,19 @@ void VolumeUnit::refuse_in_this_frame(GLuint texture, const Refusal& refusal) {
   const MergedVolume* const merged = stages().merged.volume_with(texture);
   const bool say = merged == nullptr || merged->textures.front() == texture;
   volumes_.refuse_in_this_frame(texture, refusal, stages().account, say);
+  if (session_->options().frame_latency > 0)
+    stages().views.drawn_somewhere(texture, session_->windows().frame(window_));
 }
 
 bool VolumeUnit::substitutes(std::unique_ptr<Run>& run) {
   const GLuint texture = run->volume_texture();
+  const std::optional<View> view = note_view(*run);
   const bool shown = [&] {
     std::optional<IndexedState> kept;
     if (chain().group().has_indexed_state()) kept.emplace(context());
     return shows(run);
   }();
+  if (view && !shown) session_->windows().shown(*view, false);
   FrameAccount& account = stages().account;
   const FrameShares spent = account.clock().take();
   account.note([&](FrameRecord& frame) { frame.spent_ms += spent; });
@@ -214,8 +234,11 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
     take_comparison(comparison, volume, session_->ledger().frames());
   };
   const auto& capture = recognised.seen.capture;
-  const volume::FrameCounts counts = stages.presentation.show(
-      service, {run.pipeline(), image, volume, compared_whole, capture ? &capture->polygons : nullptr}, check);
+  const volume::FrameCounts counts =
+      stages.presentation.show(service,
+                               {run.pipeline(), image, volume, run.volume_texture(), compared_whole,
+                                capture ? &capture->polygons : nullptr},
+                               check);
   run.shown = true;
   // An image that replaces pixels is drawn with the box, which writes its depth itself.
   if (!image.replaces_pixels) {

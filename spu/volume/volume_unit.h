@@ -27,6 +27,7 @@ class RenderSession;
 
 struct ImageRequest;
 struct Stages;
+struct View;
 
 class VolumeUnit final : public DrawObserver {
  public:
@@ -40,6 +41,8 @@ class VolumeUnit final : public DrawObserver {
   /// Every run writes the depth of framebuffer 0 at once: the application may read it in memory, without a call
   /// (OSMesa).
   void never_defer_window_depth() { defers_window_depth_ = false; }
+  /// The context draws into this X window from now on; 0: it draws into none.
+  void draws_into(std::uintptr_t window) { window_ = window; }
 
   void settle_held() override;
   void depth_looked_at(const std::vector<GLuint>& volumes) override;
@@ -57,6 +60,8 @@ class VolumeUnit final : public DrawObserver {
   Stages& stages();
   /// Returns whether the geometry of consecutive textured quads shows that they are slices of a volume.
   bool is_a_stack(const Run& run);
+  /// Records that the run draws a view, and returns it, if images may be late.
+  std::optional<View> note_view(const Run& run);
   bool shows(std::unique_ptr<Run>& run);
   void substitute(std::unique_ptr<Run>& run);
   void tidy();
@@ -73,6 +78,7 @@ class VolumeUnit final : public DrawObserver {
   KnownVolumes volumes_;
   std::unique_ptr<Stages> stages_;
   bool defers_window_depth_ = true;
+  std::uintptr_t window_ = 0;
   std::uint64_t tidied_in_frame_ = 0;
   std::chrono::steady_clock::time_point frame_started_;
 };

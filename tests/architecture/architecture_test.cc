@@ -35,7 +35,7 @@ constexpr auto spu_folders = std::to_array<std::string_view>({
     "spu/driver", "spu/null", "spu/pass", "spu/perf", "spu/print", "spu/track", "spu/pack", "spu/unpack",
     "spu/trace", "spu/remote", "spu/tiles", "spu/plugin",
     // the volume unit: shared by all its stages
-    "spu/volume/program", "spu/volume/refusal", "spu/volume/context", "spu/volume/pipeline",
+    "spu/volume/program", "spu/volume/refusal", "spu/volume/context", "spu/volume/views", "spu/volume/pipeline",
     "spu/volume/timing", "spu/volume/session", "spu/volume/texture", "spu/volume/budget",
     // its stages
     "spu/volume/observation", "spu/volume/depth", "spu/volume/geometry", "spu/volume/verification",

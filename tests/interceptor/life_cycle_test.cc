@@ -34,8 +34,8 @@ TEST(LifeCycle, AFrameFromTheFirstContextToItsEnd) {
                           "core: glClear", "driver: glClear",                 //
                           "core: glFlush", "driver: glFlush",                 //
                           "core: before swap", "driver: swap 10",
-                          "driver: glFlush",   // the driver's own call: not intercepted
-                          "core: after swap",  //
+                          "driver: glFlush",         // the driver's own call: not intercepted
+                          "core: after swap of 10",  //
                           "core: before make_current", "core: leaving after 2 calls",
                           "driver: current 0 drawable 0",  //
                           "driver: glClear",               //

@@ -188,7 +188,7 @@ std::optional<volume::FrameCounts> RunMerger::show_whole(MergedVolume& merged, c
   image.request.version = merged.volume.sent.description.version;
   KnownVolume& volume = merged.volume;
   image.request.exact = comparison_.begun();
-  const ImageToShow what{first.pipeline(), image, volume, comparison_.whole()};
+  const ImageToShow what{first.pipeline(), image, volume, first.run->volume_texture(), comparison_.whole()};
   try {
     return stages_.presentation.show(service, what, [&](const volume::ImageView& shown) {
       comparison_.check(first.pipeline(), shown, volume);
@@ -268,7 +268,8 @@ volume::FrameCounts RunMerger::show(HeldRun& run, compositor::RenderService& ser
   KnownVolume& volume = *run.volume;
   const bool compared_whole = stages_.verifier.whole_due(volume.verified, false, volume.frames);
   const auto unverified = [](const volume::ImageView&) {};
-  return stages_.presentation.show(service, {run.pipeline(), run.image, volume, compared_whole}, unverified);
+  return stages_.presentation.show(
+      service, {run.pipeline(), run.image, volume, run.run->volume_texture(), compared_whole}, unverified);
 }
 
 volume::FrameCounts RunMerger::show_by_session(HeldRun& run) {

@@ -6,6 +6,8 @@
 #include "compositor/rendered.h"
 #include "compositor/service.h"
 #include "spu/report/counters.h"
+#include "spu/volume/depth/depth.h"
+#include "spu/volume/session/frame_latency.h"
 #include "spu/volume/session/render_session.h"
 #include "spu/volume/timing/frame_account.h"
 #include "volume/raycast/ray_caster.h"
@@ -17,28 +19,49 @@ void RenderedImage::keep() {
   shown = kept.view();
 }
 
-bool ImageSource::may_be_behind(const ImageToShow& what) const {
+bool ImageSource::may_be_late(const ImageToShow& what, const View& view) const {
   const Options& options = session_.options();
-  if (options.frame_latency == 0 || options.has_budget() || !options.save_frames.empty()) return false;
-  // An image that is compared with this frame's request, or shown together with another, must belong to this
-  // frame.
-  if (what.compared_whole || is_finished_here(what.image, what.volume.march.march) ||
-      what.pipeline.blending.alpha_stands_apart())
+  if (options.has_budget() || !options.save_frames.empty()) return false;
+  // What is shown together with another image, drawn with this frame's box, or hides what is drawn later by
+  // this frame's depth, must be of this frame.
+  if (is_finished_here(what.image, what.volume.march.march) || what.pipeline.blending.alpha_stands_apart() ||
+      what.image.replaces_pixels || (what.image.covers_samples && what.box != nullptr) ||
+      what.volume.depth_looked_at)
     return false;
   // The application may keep a framebuffer object, and a late image with it; a window is drawn again.
-  GLint framebuffer = 0;
-  context_.gl->GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
-  return framebuffer == 0;
+  return view.framebuffer == 0 && session_.windows().can_be_redrawn(view.window);
+}
+
+/// The depth was read where the volume is in this frame; the image of the frame before may cover more.
+bool ImageSource::is_hidden_by_nothing(const ImageToShow& what, const volume::Rect& rect) const {
+  if (!what.pipeline.depth_test) return true;
+  const TimedShare timed(account_.clock(), &FrameShares::depth);
+  const auto depth = read_depth(context_, what.pipeline.target, rect, what.pipeline.depth_or_equal);
+  return !depth || hides_nothing(*depth);
+}
+
+compositor::Rendered ImageSource::rendered(compositor::RenderService& service, const ImageToShow& what,
+                                           RenderedImage& image) const {
+  const volume::RenderRequest& request = what.image.request;
+  FrameLatency* const latency = session_.frame_latency(service);
+  if (latency == nullptr) return service.render(request);
+  const View view = current_view(context_, what.texture, views_.window());
+  image.view = view;
+  if (!may_be_late(what, view)) return service.render(request);
+  const ViewInFrame where{view, session_.windows().frame(view.window)};
+  const auto previous =
+      views_.stands_alone(view, where.frame) ? latency->late_image(where, request) : std::nullopt;
+  const compositor::Rendered rendered =
+      latency->render_view(where, request, previous && is_hidden_by_nothing(what, *previous));
+  image.late = latency->is_late();
+  return rendered;
 }
 
 void ImageSource::cast_own_samples(compositor::RenderService& service, const ImageToShow& what,
                                    RenderedImage& image) {
   {
     const TimedShare timed(account_.clock(), &FrameShares::render);
-    session_.allow_behind(may_be_behind(what));
-    const compositor::Rendered rendered = service.render(what.image.request);
-    session_.allow_behind(false);
-    session_.note_shown();
+    const compositor::Rendered rendered = this->rendered(service, what, image);
     image.shown = rendered.image;
     image.counts += rendered.counts;
   }

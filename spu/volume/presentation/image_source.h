@@ -3,11 +3,14 @@
 // or the time that was requested.
 #pragma once
 
+#include <optional>
+
 #include "spu/volume/geometry/polygon.h"
 #include "spu/volume/known_volumes/known_volume.h"
 #include "spu/volume/pipeline/pipeline.h"
 #include "spu/volume/proxy/ray_caster_stage.h"
 #include "spu/volume/request/image_request.h"
+#include "spu/volume/views/drawn_views.h"
 #include "volume/frame_counts.h"
 #include "volume/image.h"
 
@@ -19,7 +22,8 @@ class RenderSession;
 
 namespace understudy::compositor {
 class RenderService;
-}
+struct Rendered;
+}  // namespace understudy::compositor
 
 namespace understudy::spu {
 
@@ -28,6 +32,8 @@ struct RenderedImage {
   volume::ImageView shown;  ///< the service's, valid until its next image; or `kept`
   volume::Image kept;
   volume::FrameCounts counts;
+  std::optional<View> view;  ///< it is shown in, if images may be late
+  bool late = false;         ///< it is that of the frame before
 
   void keep();
 };
@@ -37,15 +43,16 @@ struct ImageToShow {
   const Pipeline& pipeline;
   ImageRequest& image;
   KnownVolume& volume;
+  GLuint texture = 0;                     ///< by which the volume is known
   bool compared_whole = false;            ///< compared as a whole before it is shown
   const ObservedPolygons* box = nullptr;  ///< of a ray caster: the polygons that its fragments cover
 };
 
 class ImageSource {
  public:
-  ImageSource(const GlContext& context, RenderSession& session, RayCasterStage& ray_casters,
-              FrameAccount& account)
-      : context_(context), session_(session), ray_casters_(ray_casters), account_(account) {}
+  ImageSource(const GlContext& context, RenderSession& session, const DrawnViews& views,
+              RayCasterStage& ray_casters, FrameAccount& account)
+      : context_(context), session_(session), views_(views), ray_casters_(ray_casters), account_(account) {}
 
   /// Renders the samples of the request.
   void cast_own_samples(compositor::RenderService& service, const ImageToShow& what, RenderedImage& image);
@@ -54,10 +61,14 @@ class ImageSource {
   bool cast_within_budget(compositor::RenderService& service, const ImageToShow& what, RenderedImage& image);
 
  private:
-  bool may_be_behind(const ImageToShow& what) const;
+  compositor::Rendered rendered(compositor::RenderService& service, const ImageToShow& what,
+                                RenderedImage& image) const;
+  bool may_be_late(const ImageToShow& what, const View& view) const;
+  bool is_hidden_by_nothing(const ImageToShow& what, const volume::Rect& rect) const;
 
   const GlContext& context_;
   RenderSession& session_;
+  const DrawnViews& views_;
   RayCasterStage& ray_casters_;
   FrameAccount& account_;
 };

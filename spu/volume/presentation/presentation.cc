@@ -9,6 +9,7 @@
 #include "compositor/logging/log.h"
 #include "compositor/rendered.h"
 #include "compositor/service.h"
+#include "spu/report/counters.h"
 #include "spu/report/optimization.h"
 #include "spu/volume/presentation/save_frames.h"
 #include "spu/volume/session/render_session.h"
@@ -53,7 +54,8 @@ volume::FrameCounts Presentation::show(compositor::RenderService& service, const
   const bool own = !options.has_budget() || what.compared_whole;
   if (own) {
     source_.cast_own_samples(service, what, image);
-    check(image.shown);
+    // A late image differs from what the application draws now.
+    if (!image.late) check(image.shown);
   }
   if (options.has_budget() && !source_.cast_within_budget(service, what, image) && !own)
     source_.cast_own_samples(service, what, image);
@@ -62,6 +64,7 @@ volume::FrameCounts Presentation::show(compositor::RenderService& service, const
   if (options.debug_tint) tint(image.kept);
   const TimedShare timed(account_.clock(), &FrameShares::presentation);
   present(service, what, image);
+  note_shown(image);
   return image.counts;
 }
 
@@ -70,6 +73,12 @@ void Presentation::show_native(compositor::RenderService& service, const ImageTo
   const TimedShare timed(account_.clock(), &FrameShares::presentation);
   RenderedImage native{.shown = image, .kept = {}, .counts = {}};
   present(service, what, native);
+}
+
+void Presentation::note_shown(const RenderedImage& image) {
+  if (!image.view) return;
+  session_.windows().shown(*image.view, image.late);
+  if (image.late) process_counters().images_behind.fetch_add(1, std::memory_order_relaxed);
 }
 
 void Presentation::save(const ImageToShow& what, const volume::ImageView& shown) {

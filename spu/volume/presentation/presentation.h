@@ -17,7 +17,7 @@ namespace understudy::spu {
 
 class Presentation {
  public:
-  /// Receives the image before it is shown, and may throw.
+  /// Receives the image before it is shown unless it is late, and may throw.
   using Check = std::function<void(const volume::ImageView&)>;
 
   Presentation(const GlContext& context, RenderSession& session, ImageSource& source, FrameAccount& account)
@@ -32,6 +32,7 @@ class Presentation {
 
  private:
   bool skips(Optimization optimization) const { return !session_.disabled_optimizations(optimization); }
+  void note_shown(const RenderedImage& image);
   void save(const ImageToShow& what, const volume::ImageView& shown);
   void present(compositor::RenderService& service, const ImageToShow& what, RenderedImage& image);
 

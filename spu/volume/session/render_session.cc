@@ -42,9 +42,9 @@ compositor::RenderService& RenderSession::service() {
                                [this](std::string_view why) { heard_of_image(why); });
     // A ray caster in this process would take the viewer's own time.
     if (options_.frame_latency > 0 && service_->nodes() > 0) {
-      auto pipeline = std::make_unique<FrameLatency>(std::move(service_));
-      pipeline_ = pipeline.get();
-      service_ = std::move(pipeline);
+      auto late = std::make_unique<FrameLatency>(std::move(service_));
+      frame_latency_ = late.get();
+      service_ = std::move(late);
     }
   } catch (const compositor::ServiceLost& unreachable) {
     if (!connected_once_ && !launcher_tells()) {
@@ -69,14 +69,8 @@ void RenderSession::heard_of_image(std::string_view why_cast) {
   if (cast) count_done(Optimization::unchanged_images, why_cast);
 }
 
-void RenderSession::allow_behind(bool allowed) {
-  if (pipeline_ != nullptr) pipeline_->allow(allowed && window_can_be_asked_);
-}
-
-void RenderSession::note_shown() {
-  if (pipeline_ == nullptr || !pipeline_->is_behind()) return;
-  behind_shown_ = true;
-  process_counters().images_behind.fetch_add(1, std::memory_order_relaxed);
+FrameLatency* RenderSession::frame_latency(const compositor::RenderService& service) const {
+  return &service == frame_latency_ ? frame_latency_ : nullptr;
 }
 
 std::unique_ptr<compositor::RenderService> RenderSession::connect() {
@@ -104,7 +98,7 @@ void RenderSession::lost(const compositor::ServiceLost& loss) {
   if (!launcher_tells()) {
     logging::log(logging::Level::warn, "{}; the viewer draws by itself until the nodes are back", loss.what());
   }
-  pipeline_ = nullptr;
+  frame_latency_ = nullptr;
   service_.reset();
   why_lost_ = loss.reason();
   not_before_ = std::chrono::steady_clock::now() + retry_after;

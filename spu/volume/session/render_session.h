@@ -13,6 +13,7 @@
 
 #include "spu/options.h"
 #include "spu/volume/timing/frame_ledger.h"
+#include "spu/volume/views/shown_windows.h"
 #include "volume/volume_id.h"
 
 namespace understudy::compositor {
@@ -47,17 +48,11 @@ class RenderSession {
   /// Increases whenever a new service begins, which has no volumes yet.
   std::uint64_t generation() const { return generation_; }
 
-  /// Set at frame ends: whether this thread's window can be asked to draw itself again. Images may be late only
-  /// then.
-  void window_can_be_asked(bool can) { window_can_be_asked_ = can; }
-  bool window_can_be_asked() const { return window_can_be_asked_; }
-  /// Sets whether the next images may be those of the frame before (`--frame-latency`); without nodes they
-  /// never are. Requires the lock.
-  void allow_behind(bool allowed);
-  /// Called when the latest image is to be shown: counts it if it is late. Requires the lock.
-  void note_shown();
-  /// Returns whether a late image has been shown since the last call.
-  bool take_behind() { return behind_shown_.exchange(false); }
+  /// Returns `service` as the one that may answer with late images (`--frame-latency`); null if it may not:
+  /// without nodes, or if it is not the session's. Requires the lock.
+  FrameLatency* frame_latency(const compositor::RenderService& service) const;
+  /// The windows that may show late images. Requires no lock.
+  ShownWindows& windows() { return windows_; }
 
   /// Called when the service failed: explains it once; the next call of service() connects anew. Requires the
   /// lock.
@@ -83,9 +78,8 @@ class RenderSession {
   std::mutex mutex_;
   std::string address_;  ///< of the nodes; empty: embedded
   std::unique_ptr<compositor::RenderService> service_;
-  FrameLatency* pipeline_ = nullptr;  ///< the service, if images may be late
-  std::atomic<bool> window_can_be_asked_ = false;
-  std::atomic<bool> behind_shown_ = false;
+  FrameLatency* frame_latency_ = nullptr;  ///< the service, if images may be late
+  ShownWindows windows_;
   std::uint64_t generation_ = 0;
   volume::VolumeId last_volume_ = 0;
   bool connected_once_ = false;

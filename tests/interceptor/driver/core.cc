@@ -76,8 +76,8 @@ void context_destroyed(std::uintptr_t context) {
 void before_frame_end(FrameEnd kind) {
   say("core: before %s\n", text(kind));
 }
-void after_frame_end(FrameEnd kind) {
-  say("core: after %s\n", text(kind));
+void after_frame_end(FrameEnd kind, std::uintptr_t window) {
+  say(window == 0 ? "core: after %s\n" : "core: after %s of %lu\n", text(kind), window);
 }
 
 RemoteVersions remote_versions() {

@@ -64,7 +64,7 @@ function(install_component name)
 endfunction()
 
 install_component(raycast
-  TARGETS raycast understudy_volume files understudy_volume_file
+  TARGETS raycast understudy_volume volume_export understudy_volume_export files understudy_volume_file
   HEADERS volume/brick/brick_store.h volume/brick/histogram.h volume/file/file_error.h volume/opening/open_volume.h
     volume/frame_counts.h volume/image.h volume/matrix.h volume/orbit_camera.h volume/raycast/ray_caster.h
     volume/reference/pixel_integral.h volume/request.h volume/transfer_control_points.h)
@@ -75,7 +75,7 @@ if(MPI_CXX_FOUND)
   list(APPEND compositor_headers compositor/exchange/mpi_communicator.h)
 endif()
 install_component(compositor
-  TARGETS transport understudy_transport logging understudy_logging compositor understudy_compositor loading
+  TARGETS transport understudy_transport logging understudy_logging compositor understudy_compositor scene understudy_scene loading
     understudy_loading pixels understudy_pixels nodes understudy_exchange
   HEADERS ${compositor_headers})
 # A glslang that is built here is not installed.

@@ -168,6 +168,10 @@ constexpr std::array rows{
     Row{{"--save-frames", "UNDERSTUDY_SAVE_FRAMES", "DIR", "",
          "folder to save the composited float images in: frame_0001.pfm and frame_0001_alpha.pfm, …"},
         set_text<&Options::save_frames>},
+    Row{{"--export", "UNDERSTUDY_EXPORT", "DIR", "",
+         "folder to save each recognised volume in, with camera and transfer function, as a scene for "
+         "`understudy render`: scene.json, scene_2.json, …"},
+        set_text<&Options::export_folder>},
     Row{{"--debug-tint", "UNDERSTUDY_DEBUG_TINT", "", "off", "tint the pixels that Understudy drew"},
         set_switch<&Options::debug_tint>},
     Row{{"", "UNDERSTUDY_DISABLE", "", "off", "pass every call to the real OpenGL"},

@@ -28,6 +28,7 @@ struct Options {
   double error = 0;               ///< largest error of an image; 0: take the viewer's own samples
   double time_ms = 0;             ///< longest time for an image; 0: take the viewer's own samples
   std::string save_frames;        ///< folder for PFM files; empty: none
+  std::string export_folder;      ///< for the scenes that were recognised; empty: none
   std::string exchange = "auto";  ///< name of compositor::set_algorithm
   std::string pixels = "float";   ///< name of compositor::set_layout
   std::string gather = "direct";  ///< name of compositor::set_gather

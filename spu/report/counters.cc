@@ -157,6 +157,10 @@ void hand_on(VolumeCounters& volume, VolumeCounters& last) {
   last.verified_tiles.fetch_add(volume.verified_tiles.exchange(0));
   last.verify_lost.fetch_add(volume.verify_lost.exchange(0));
   put_text(volume.explanation, "");
+  put_text(volume.scene, "");
+  // The reason of one brick is that of the whole volume.
+  if (last.not_exported[0] == '\0') put_text(last.not_exported, volume.not_exported);
+  put_text(volume.not_exported, "");
   put_text(volume.texture_format, "");
   std::fill(std::begin(volume.size), std::end(volume.size), 0);
   put_text(last.explanation, "all volumes that found no place of their own any more, together");

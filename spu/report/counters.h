@@ -18,7 +18,7 @@
 
 namespace understudy::spu {
 
-constexpr std::uint32_t counters_magic = 0x55444333;  // "UDC3"
+constexpr std::uint32_t counters_magic = 0x55444334;  // "UDC4"
 constexpr int max_counted_volumes = 32;
 constexpr int max_counted_reasons = 8;
 constexpr int max_counted_done_reasons = 4;
@@ -66,6 +66,8 @@ struct VolumeCounters {
   std::atomic<std::uint64_t> verified_tiles;  ///< sentinels
   std::atomic<std::uint64_t> verify_lost;     ///< comparisons beyond the bound
   char explanation[512];                      ///< what was recognised, in words
+  char scene[32];                             ///< file in the folder of --export; empty: none
+  char not_exported[200];                     ///< why there is none, as far as known
   BudgetCounters budget;
 };
 

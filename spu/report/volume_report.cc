@@ -38,6 +38,14 @@ Json verified(const VolumeCounters& volume) {
   return json;
 }
 
+Json exported(const VolumeCounters& volume) {
+  const std::string scene = text_in(volume.scene);
+  const std::string because = text_in(volume.not_exported);
+  if (scene.empty() && because.empty()) return nullptr;
+  return {{report_key::scene, scene.empty() ? Json(nullptr) : Json(scene)},
+          {report_key::because, because.empty() ? Json(nullptr) : Json(because)}};
+}
+
 }  // namespace
 
 Json report_of(const BudgetCounters& budget) {
@@ -107,6 +115,7 @@ Json report_of(const VolumeCounters& volume, std::int32_t pid) {
           {report_key::left_because, because},
           {report_key::verify, verified(volume)},
           {report_key::budget, report_of(volume.budget)},
+          {report_key::exported, exported(volume)},
           {report_key::explanation, text_in(volume.explanation)}};
 }
 

@@ -11,6 +11,7 @@
 #include "spu/volume/presentation/presentation.h"
 #include "spu/volume/proxy/ray_caster_stage.h"
 #include "spu/volume/recognition/recogniser.h"
+#include "spu/volume/scene_export/scene_export.h"
 #include "spu/volume/slices/slice_stage.h"
 
 namespace understudy::spu {
@@ -33,6 +34,7 @@ struct Stages {
         verifier(context, session, account),
         depth(context, session, account),
         merged(group, session, volumes),
+        scenes(context, group, session, volumes, account),
         merger({context, group, session, uploader, slices, composer, verifier, presentation, account}, volumes,
                merged, std::move(nothing_held)) {}
   Stages(const Stages&) = delete;
@@ -52,6 +54,7 @@ struct Stages {
   Verifier verifier;
   DepthWatch depth;
   MergedVolumes merged;
+  SceneExport scenes;
   RunMerger merger;
 };
 

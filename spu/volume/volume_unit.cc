@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "compositor/rendered.h"
 #include "compositor/service.h"
@@ -225,6 +226,7 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
   // An image within a budget is not compared with the viewer's: its error is measured, if that was requested.
   const bool measured = options.has_budget() ? options.error > 0 : volume.verified.schedule.sentinels() > 0;
   request.exact = compared_whole || measured;
+  std::optional<SceneCandidate> scene = stages.scenes.candidate(run, image, volume);
   const auto check = [&](const volume::ImageView& shown) {
     auto comparison = stages.verifier.verify(
         {run, request, image.uncut_window.value_or(request.window), image.eye_inside, volume.frames}, shown,
@@ -232,6 +234,7 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
     if (comparison && image.background_alone) comparison->difference.anything_visible = false;
     if (comparison && !comparison->right) try_rounding(run.pipeline(), image, volume, service);
     take_comparison(comparison, volume, session_->ledger().frames());
+    if (scene) stages.scenes.look_at(*scene, comparison, shown);
   };
   const auto& capture = recognised.seen.capture;
   const volume::FrameCounts counts =
@@ -240,6 +243,7 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
                                 capture ? &capture->polygons : nullptr},
                                check);
   run.shown = true;
+  if (scene) stages.scenes.keep(std::move(*scene));
   // An image that replaces pixels is drawn with the box, which writes its depth itself.
   if (!image.replaces_pixels) {
     if (const auto watched = stages.depth.settle(run, image.uncut_window.value_or(request.window),
@@ -296,7 +300,18 @@ void VolumeUnit::depth_gone() {
   if (deferred_depth.empty()) chain().set_phase(Phase::watching);
 }
 
+void VolumeUnit::export_scenes() {
+  // Calls would be recorded in the list.
+  if (!stages_ || stages_->scenes.empty() || chain().phase() == Phase::compiling) return;
+  const Clock::time_point start = Clock::now();
+  std::optional<IndexedState> kept;
+  if (chain().group().has_indexed_state()) kept.emplace(context());
+  stages_->scenes.write(stages_->merged);
+  frame_started_ += Clock::now() - start;  // not a part of the frame's time
+}
+
 void VolumeUnit::frame_ended(FrameEnd kind) {
+  export_scenes();
   // Another context may sample a depth texture that is attached here.
   if (kind == FrameEnd::make_current) depth_looked_at(deferred_depth.take_textures(std::nullopt));
   if (kind != FrameEnd::swap && kind != FrameEnd::finish) return;
@@ -323,6 +338,7 @@ void VolumeUnit::abandon() {
   volumes_.forget_all();
   if (!stages_) return;
   stages_->programs.forget();
+  stages_->scenes.forget();
   stages_->merged.forget_all();
   stages_->merger.forget_held();
 }

@@ -8,6 +8,7 @@
 //   compose        composes an ImageRequest                                          request/, slices/, proxy/
 //   verify         compares the nodes' image with the application's own              verification/
 //   present        puts it where the application would have drawn                    presentation/
+//   export         saves it as a scene when the frame has ended, if that is asked    scene_export/
 //
 // Runs that draw textures of one volume wait for each other between recognition and presentation (merging/).
 // When any of the stages throws a Refusal, the application's own draws are replayed unchanged.
@@ -73,6 +74,8 @@ class VolumeUnit final : public DrawObserver {
   /// Returns whether something reads the depth that a run of the volume would write in the bound framebuffer.
   bool depth_is_read(const KnownVolume& volume);
   void forget_deleted_volumes();
+  /// Saves the scenes of the frame that ends.
+  void export_scenes();
 
   std::shared_ptr<RenderSession> session_;
   KnownVolumes volumes_;

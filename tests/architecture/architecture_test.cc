@@ -41,7 +41,7 @@ constexpr auto spu_folders = std::to_array<std::string_view>({
     "spu/volume/observation", "spu/volume/depth", "spu/volume/geometry", "spu/volume/verification",
     "spu/volume/program_check", "spu/volume/classification", "spu/volume/upload", "spu/volume/request",
     "spu/volume/slices", "spu/volume/proxy", "spu/volume/recognition", "spu/volume/known_volumes",
-    "spu/volume/presentation", "spu/volume/merging", "spu/volume",
+    "spu/volume/presentation", "spu/volume/merging", "spu/volume/scene_export", "spu/volume",
     // what uses all units
     "spu/registry", "spu/player", "spu/trim", "spu/dispatch"});
 

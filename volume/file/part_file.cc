@@ -15,7 +15,7 @@
 
 namespace understudy::volume {
 
-PartFile::PartFile(const std::string& path) : path_(path) {
+PartFile::PartFile(const std::string& path, Meanwhile meanwhile) : path_(path) {
   std::error_code none;
   // Replaces the target of a symbolic link, not the link itself.
   if (std::filesystem::is_symlink(path, none)) path_ = std::filesystem::weakly_canonical(path, none);
@@ -26,7 +26,7 @@ PartFile::PartFile(const std::string& path) : path_(path) {
   std::uint64_t random = 0;
   if (getrandom(&random, sizeof random, 0) != ssize_t(sizeof random)) fail();
   beside_ = fmt::format("{}.{:016x}.part", path_, random);
-  open_without_name();
+  if (meanwhile == Meanwhile::nameless) open_without_name();
   if (file_) return;
   file_.reset(std::fopen(beside_.c_str(), "wbxe"));
   if (!file_) fail();

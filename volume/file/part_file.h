@@ -15,7 +15,10 @@ namespace understudy::volume {
 /// All functions throw FileError.
 class PartFile {
  public:
-  explicit PartFile(const std::string& path);
+  /// named: the file has the temporary name from the beginning, because a sandbox may forbid to give it one.
+  enum class Meanwhile { nameless, named };
+
+  explicit PartFile(const std::string& path, Meanwhile meanwhile = Meanwhile::nameless);
   PartFile(const PartFile&) = delete;
   PartFile& operator=(const PartFile&) = delete;
   ~PartFile();

@@ -20,7 +20,7 @@ const Heading headings[] = {
      {"transfer-function", "method", "cut-at-bricks", "tolerance", "operator", "surface", "no-volume", "step",
       "termination", "error", "time"}},
     {"Light", {"light", "light-from", "material"}},
-    {"Image", {"camera", "size", "frames", "out", "save-float", "save-frames"}},
+    {"Image", {"camera", "size", "frames", "out", "save-float", "save-frames", "export"}},
     {"The file's scalars", {"volume-size", "type", "big-endian", "spacing", "texels", "range"}},
     {"Nodes",
      {"nodes", "hostfile", "connect", "secret-file", "key", "server-key", "plain", "quality", "backend",

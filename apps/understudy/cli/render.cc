@@ -19,9 +19,11 @@
 #include "apps/understudy/cli/memory_option.h"
 #include "apps/understudy/cli/output_file.h"
 #include "apps/understudy/cli/render_report.h"
+#include "apps/understudy/cli/render_scene.h"
 #include "apps/understudy/cli/scene_frames.h"
 #include "apps/understudy/file_scene/file_scene.h"
 #include "apps/understudy/file_scene/load_progress.h"
+#include "apps/understudy/file_scene/scene_file.h"
 #include "apps/understudy/images/image.h"
 #include "apps/understudy/progress/progress_option.h"
 #include "compositor/logging/log.h"
@@ -179,7 +181,17 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
   return figures;
 }
 
-int render(RenderArguments arguments) {
+bool is_scene(const RenderArguments& arguments) {
+  return arguments.scene.volumes.size() == 1 && is_scene_file(arguments.scene.volumes.front());
+}
+
+int render(RenderArguments arguments, const CLI::App& command) {
+  if (is_scene(arguments)) {
+    refuse_options_with_scene(command);
+    return render_scene({arguments.scene.volumes.front(), arguments.out, arguments.save_float, arguments.frames,
+                         arguments.progress.quiet},
+                        arguments.nodes);
+  }
   refuse_rounded_bounds(arguments);
   arguments.scene.samples_are_free =
       !arguments.scene.error_bound &&
@@ -210,6 +222,9 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* render_command =
       app.add_subcommand("render", "renders an image of a volume file, without a viewer");
   add_scene_options(*render_command, arguments->scene);
+  CLI::Option* const volume = render_command->get_option("VOLUME");
+  volume->description(volume->get_description() +
+                      "; or a scene that `understudy run --export` has saved (DIR/scene.json)");
   add_loading_nodes(*render_command, arguments->nodes);
   add_memory_option(
       *render_command, arguments->memory,
@@ -245,7 +260,9 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
       ->check(CLI::Range(1, max_frames))
       ->capture_default_str();
   add_progress_options(*render_command, arguments->progress, ", with the bytes that each rank has read");
-  render_command->callback([arguments, &chosen] { chosen = [arguments] { return render(*arguments); }; });
+  render_command->callback([arguments, render_command, &chosen] {
+    chosen = [arguments, render_command] { return render(*arguments, *render_command); };
+  });
 }
 
 }  // namespace understudy::launcher

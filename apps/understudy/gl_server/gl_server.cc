@@ -89,6 +89,7 @@ spu::Options options_of_tile_worker(const spu::TilePlace& place) {
   spu::Options options = spu::options_from_environment();
   options.chain = fmt::format("tile(part={},of={}) driver", place.part, place.parts);
   options.save_frames.clear();
+  options.export_folder.clear();
   return options;
 }
 
@@ -97,6 +98,7 @@ spu::Options options_of_tile_worker(const spu::TilePlace& place) {
 SandboxFolders folders_used(const spu::Options& options) {
   SandboxFolders folders;
   if (!options.save_frames.empty()) folders.written.emplace_back(options.save_frames);
+  if (!options.export_folder.empty()) folders.written.emplace_back(options.export_folder);
   for (const std::filesystem::path& file : spu::files_of_units(options.chain))
     folders.written.push_back(file.parent_path());
   folders.libraries = folders_of_libraries(current_environment());

@@ -48,6 +48,19 @@ struct PngImage {
   ~PngImage() { png_image_free(&image); }
 };
 
+/// An image as libpng writes it.
+struct BytesOfPng {
+  PngImage description;
+  std::vector<std::uint8_t> pixels;
+
+  explicit BytesOfPng(const RgbaImage& image) : pixels(image.rgba.size()) {
+    description.image.width = static_cast<png_uint_32>(image.width);
+    description.image.height = static_cast<png_uint_32>(image.height);
+    description.image.format = PNG_FORMAT_RGBA;
+    std::transform(image.rgba.begin(), image.rgba.end(), pixels.begin(), byte_of);
+  }
+};
+
 RgbaImage read_png(const std::filesystem::path& path) {
   PngImage png;
   if (png_image_begin_read_from_file(&png.image, path.c_str()) == 0) fail(path, png.image.message);
@@ -169,15 +182,25 @@ RgbaImage read_image(const std::filesystem::path& path) {
   fail(path, "neither a PNG nor a PFM image");
 }
 
+std::vector<std::byte> png_bytes(const RgbaImage& image) {
+  BytesOfPng png(image);
+  png_alloc_size_t size = 0;
+  std::vector<std::byte> file;
+  // The first call only determines the size.
+  for (const bool measured : {false, true}) {
+    if (measured) file.resize(size);
+    if (png_image_write_to_memory(&png.description.image, measured ? file.data() : nullptr, &size, 0,
+                                  png.pixels.data(), 0, nullptr) == 0)
+      throw std::runtime_error(png.description.image.message);
+  }
+  file.resize(size);
+  return file;
+}
+
 void write_png(const std::filesystem::path& path, const RgbaImage& image) {
-  PngImage png;
-  png.image.width = static_cast<png_uint_32>(image.width);
-  png.image.height = static_cast<png_uint_32>(image.height);
-  png.image.format = PNG_FORMAT_RGBA;
-  std::vector<std::uint8_t> bytes(image.rgba.size());
-  std::transform(image.rgba.begin(), image.rgba.end(), bytes.begin(), byte_of);
-  if (png_image_write_to_file(&png.image, path.c_str(), 0, bytes.data(), 0, nullptr) == 0)
-    fail(path, png.image.message);
+  BytesOfPng png(image);
+  if (png_image_write_to_file(&png.description.image, path.c_str(), 0, png.pixels.data(), 0, nullptr) == 0)
+    fail(path, png.description.image.message);
 }
 
 void write_pfm(const std::filesystem::path& path, const RgbaImage& image) {

@@ -2,6 +2,7 @@
 // Image files: PNG, and PFM (Debevec's portable float map) for composited frames before rounding.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -37,6 +38,9 @@ constexpr std::uint8_t byte_of(float value) {
 /// Reads a PNG or a PFM image, detected by its first bytes. The alpha channel of `frame.pfm` is read from
 /// `frame_alpha.pfm` beside it, if that exists. Throws std::runtime_error with the path and what is wrong.
 RgbaImage read_image(const std::filesystem::path& path);
+
+/// Returns the image as a PNG file; values outside 0 to 1 are clamped. Throws std::runtime_error.
+std::vector<std::byte> png_bytes(const RgbaImage& image);
 
 /// Writes a PNG image; values outside 0 to 1 are clamped. Throws std::runtime_error.
 void write_png(const std::filesystem::path& path, const RgbaImage& image);

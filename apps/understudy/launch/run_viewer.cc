@@ -21,6 +21,7 @@
 #include "apps/understudy/hosts/placement.h"
 #include "apps/understudy/launch/backend_option.h"
 #include "apps/understudy/launch/connection_figures.h"
+#include "apps/understudy/launch/exported_scenes.h"
 #include "apps/understudy/launch/node_group.h"
 #include "apps/understudy/launch/relay.h"
 #include "apps/understudy/launch/run_figures.h"
@@ -88,6 +89,8 @@ Environment viewer_environment(const RunArguments& arguments, const spu::Options
   environment.erase("UNDERSTUDY_REPORT");
   if (!options.save_frames.empty())
     environment["UNDERSTUDY_SAVE_FRAMES"] = absolute_or_empty(options.save_frames);
+  if (!options.export_folder.empty())
+    environment["UNDERSTUDY_EXPORT"] = absolute_or_empty(options.export_folder);
   if (nodes) {
     environment["UNDERSTUDY_NODES"] = std::to_string(nodes->placement.ranks);
     environment["UNDERSTUDY_CONNECT"] = nodes->socket;
@@ -230,6 +233,7 @@ void tell_what_happened(const spu::Options& options, bool quiet, const RunFolder
     if (!connection.is_null()) say(connection_text(connection));
   }
   if (!quiet) std::fprintf(stderr, "%s\n", figures.summary().c_str());
+  if (!options.export_folder.empty()) complete_exported_scenes(options.export_folder, folder.path(), processes);
   if (options.report.empty()) return;
   try {
     spu::replace_file(options.report, with_the_launchers(spu::report_json(processes), backends, connection));
@@ -299,6 +303,9 @@ void check_outputs(const spu::Options& options) {
   if (!report.empty()) throw CannotRun("--report: " + report);
   const std::string frames = options.save_frames.empty() ? "" : obstacle_to_writing_into(options.save_frames);
   if (!frames.empty()) throw CannotRun("--save-frames: " + frames);
+  const std::string scenes =
+      options.export_folder.empty() ? "" : obstacle_to_writing_into(options.export_folder);
+  if (!scenes.empty()) throw CannotRun("--export: " + scenes);
 }
 
 /// Throws CannotRun.
@@ -373,6 +380,8 @@ void tell_options_without_effect(const RunArguments& arguments, const RunPlan& p
         fmt::format("--server-opengl {} has no effect without a GL server of this run (--remote); for a GL "
                     "server elsewhere, give it to understudy serve --gl-server",
                     plan.options.server_opengl));
+  if (plan.connection && arguments.remote && !plan.options.export_folder.empty())
+    say("--export has no effect with a GL server elsewhere, where the volumes are recognised");
   if (plan.connection && plan.options.tiles)
     say("--tiles has no effect on a GL server elsewhere; give it to understudy serve --gl-server");
 }

@@ -26,6 +26,7 @@ struct KnownVolume {
   RefusalHistory refusals;
   SpeedGuard speed;
   std::unique_ptr<Budget> budget;  ///< if an error or a time was requested
+  bool exported = false;           ///< its scene was saved, or can never be
   bool depth_looked_at = false;    ///< the depth that its slices write was read
   std::uint64_t frames = 0;        ///< in which it was substituted since it was last measured
   VolumeCounters* counters = nullptr;

@@ -113,6 +113,14 @@ std::optional<Refusal> MergedVolumes::speed_refusal(MergedVolume& merged, GLuint
   return merged.verdict;
 }
 
+bool MergedVolumes::is_brick(GLuint texture) {
+  if (volume_with(texture) != nullptr) return true;
+  return std::ranges::any_of(groups_, [&](const Group& group) {
+    return std::ranges::find(group.textures, texture) != group.textures.end() && may_be_one(group) &&
+           merged(group) != nullptr;
+  });
+}
+
 void MergedVolumes::learn_anew(GLuint texture, const volume::TexelBox& texels) {
   forget(texture);
   volume::TexelBox& shown = shown_[texture];

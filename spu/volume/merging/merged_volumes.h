@@ -30,6 +30,8 @@ class MergedVolumes {
 
   /// Returns the volume that `texture` is a brick of; null if there is none.
   MergedVolume* volume_with(GLuint texture) const;
+  /// Whether `texture` is a brick of a volume, or will be once find() is called.
+  bool is_brick(GLuint texture);
   /// Returns why the application itself draws the bricks of `merged` with `program` in this frame, for the sake
   /// of speed; null if there is no reason.
   std::optional<Refusal> speed_refusal(MergedVolume& merged, GLuint program);

@@ -11,12 +11,16 @@
 namespace understudy::spu {
 namespace {
 
-std::string write_pfm(const std::string& path, const char* kind, const volume::Rect& size,
-                      const std::vector<float>& values) {
-  std::ofstream file(path, std::ios::binary);
+std::string pfm(const char* kind, const volume::Rect& size, const std::vector<float>& values) {
   // A negative scale means little-endian; rows are bottom up, as in the framebuffer.
-  file << kind << '\n' << size.width << ' ' << size.height << "\n-1.0\n";
-  file.write(reinterpret_cast<const char*>(values.data()), std::streamsize(values.size() * sizeof(float)));
+  std::string file = fmt::format("{}\n{} {}\n-1.0\n", kind, size.width, size.height);
+  file.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+  return file;
+}
+
+std::string write(const std::string& path, const std::string& contents) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(contents.data(), std::streamsize(contents.size()));
   file.close();
   if (file) return {};
   return fmt::format("cannot write {}: {}; check that the folder exists and has room", path,
@@ -25,8 +29,7 @@ std::string write_pfm(const std::string& path, const char* kind, const volume::R
 
 }  // namespace
 
-std::string save_frame(const std::string& folder, std::uint64_t number, const volume::Rect& viewport,
-                       const volume::ImageView& image, float outside) {
+FloatMaps float_maps(const volume::Rect& viewport, const volume::ImageView& image, float outside) {
   std::vector<float> colour(3 * viewport.pixels(), outside);
   std::vector<float> alpha(viewport.pixels(), outside);
   const volume::Rect shared = intersection(viewport, image.rect);
@@ -40,9 +43,15 @@ std::string save_frame(const std::string& folder, std::uint64_t number, const vo
       alpha[to] = image.rgba[4 * from + 3];
     }
   }
+  return {pfm("PF", viewport, colour), pfm("Pf", viewport, alpha)};
+}
+
+std::string save_frame(const std::string& folder, std::uint64_t number, const volume::Rect& viewport,
+                       const volume::ImageView& image, float outside) {
+  const FloatMaps maps = float_maps(viewport, image, outside);
   const std::string stem = fmt::format("{}/frame_{:04}", folder, number);
-  const std::string trouble = write_pfm(stem + ".pfm", "PF", viewport, colour);
-  return trouble.empty() ? write_pfm(stem + "_alpha.pfm", "Pf", viewport, alpha) : trouble;
+  const std::string trouble = write(stem + ".pfm", maps.colour);
+  return trouble.empty() ? write(stem + "_alpha.pfm", maps.alpha) : trouble;
 }
 
 }  // namespace understudy::spu

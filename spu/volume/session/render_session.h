@@ -67,6 +67,9 @@ class RenderSession {
 
   volume::VolumeId new_volume_id() { return ++last_volume_; }
 
+  /// Number of the next scene that this process exports, from 1. May be called without the lock.
+  int new_scene_number() { return ++last_scene_; }
+
  private:
   /// Whether whoever started the nodes reports what happens to them; then nothing is printed here.
   bool launcher_tells() const;
@@ -82,6 +85,7 @@ class RenderSession {
   ShownWindows windows_;
   std::uint64_t generation_ = 0;
   volume::VolumeId last_volume_ = 0;
+  std::atomic<int> last_scene_ = 0;
   bool connected_once_ = false;
   std::atomic<bool> ended_ = false;
   std::chrono::steady_clock::time_point not_before_{};

@@ -37,11 +37,20 @@ TEST(PartFile, HasItsNameOnceItIsWhole) {
   }
   EXPECT_EQ(std::filesystem::file_size(path), 5U);
   EXPECT_EQ(files_in(folder), 1);
-  {
-    PartFile file(folder.file("b"));
+  for (const auto meanwhile : {PartFile::Meanwhile::nameless, PartFile::Meanwhile::named}) {
+    PartFile file(folder.file("b"), meanwhile);
     file.append(std::as_bytes(std::span("12345", 5)));
+    EXPECT_FALSE(std::filesystem::exists(folder.file("b")));
   }
   EXPECT_EQ(files_in(folder), 1) << "it never became whole";
+  {
+    PartFile file(folder.file("b"), PartFile::Meanwhile::named);
+    file.append(std::as_bytes(std::span("12345", 5)));
+    EXPECT_EQ(files_in(folder), 2);
+    file.finish();
+  }
+  EXPECT_EQ(std::filesystem::file_size(folder.file("b")), 5U);
+  EXPECT_EQ(files_in(folder), 2);
 }
 
 TEST(PartFile, OfAProcessThatIsKilledNothingIsLeft) {

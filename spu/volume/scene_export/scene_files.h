@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files of an exported scene: texels (NRRD), colour map (ParaView), image (PFM), and the scene itself
+// (JSON), which is written last.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "compositor/scene/exported_scene.h"
+#include "spu/volume/presentation/save_frames.h"
+#include "spu/volume/texture/texels.h"
+
+namespace understudy::spu {
+
+constexpr int max_exported_scenes = 16;  ///< of one run
+
+/// Names in the folder of the scenes.
+struct SceneFiles {
+  std::string scene;
+  std::string header;
+  std::string texels;
+  std::string colour_map;
+  std::string image;
+  std::string alpha;
+};
+
+/// The first scene's files have no number in their names.
+SceneFiles scene_files(int number);
+
+/// The processes of a run share `folder`: a hidden file there marks each number that one of them has taken.
+/// `run` is the launcher's folder for the run, whose name tells runs apart; without a launcher (empty), every
+/// process is alone. Returns false if another process has the number.
+bool claim_scene(const std::string& folder, const std::string& run, int number);
+/// Removes the mark, when the run is over; returns whether there was one.
+bool withdraw_claim(const std::string& folder, const std::string& run, int number);
+
+/// Writes the files, each completely or not at all. Throws what the writers and `source` throw; then there is
+/// no scene file.
+void write_scene(const std::string& folder, const SceneFiles& files, compositor::ExportedScene scene,
+                 TexelSource& source, const FloatMaps& image);
+
+}  // namespace understudy::spu

@@ -71,6 +71,20 @@ TEST_F(Export, OfTwoVolumesIsTwoScenes) {
   EXPECT_LT(told("the two", png("scene.png"), png("scene_2.png")).psnr, 40);
 }
 
+TEST_F(Export, KeepsWhatOpaqueGeometryHides) {
+  if (const std::string lacking = missing({Need::engine}); !lacking.empty()) GTEST_SKIP() << lacking;
+  run_well(under({"--export", file("scenes")}) + engine_viewer("core", exported_view + Words{"--opaque"}));
+  const fs::path scene = file("scenes") / "scene.json";
+  run_well(render(scene, {"--out", file("again.png")}));
+  EXPECT_GE(told("with what hides it", png("again.png"), png("scenes/image.png")).psnr, 60);
+  nlohmann::json changed = nlohmann::json::parse(contents(scene));
+  ASSERT_TRUE(changed.at("request").at("depth").is_object()) << "something hides it";
+  changed.at("request").at("depth") = nullptr;
+  std::ofstream(scene) << changed;
+  run_well(render(scene, {"--out", file("whole.png")}));
+  EXPECT_LT(told("without", png("whole.png"), png("scenes/image.png")).psnr, 40);
+}
+
 class ExportOfAGlServer : public RemoteViewer {};
 
 TEST_F(ExportOfAGlServer, IsWrittenFromItsSandbox) {

@@ -30,11 +30,12 @@ std::vector<const VolumeCounters*> volumes_of(const ProcessCounters& process) {
   return result;
 }
 
-/// Visits the frames in the ring, which holds the last max_frame_records, oldest first.
+/// Visits the last `most` frames in the ring, which holds the last max_frame_records, oldest first.
 template <typename Visit>
-void for_each_kept_frame(const ProcessCounters& process, Visit visit) {
+void for_each_kept_frame(const ProcessCounters& process, std::size_t most, Visit visit) {
   const std::uint64_t frames = process.frames.load();
-  const std::uint64_t first = frames > max_frame_records ? frames - max_frame_records : 0;
+  const std::uint64_t kept = std::min<std::uint64_t>({frames, most, max_frame_records});
+  const std::uint64_t first = frames - kept;
   for (std::uint64_t number = first; number < frames; ++number) {
     visit(number, process.frame[number % max_frame_records]);
   }
@@ -67,7 +68,7 @@ Json median_times(Processes processes) {
   std::vector<double> depth;
   std::vector<double> budget;
   for (const ProcessCounters* process : processes) {
-    for_each_kept_frame(*process, [&](std::uint64_t, const FrameRecord& frame) {
+    for_each_kept_frame(*process, max_frame_records, [&](std::uint64_t, const FrameRecord& frame) {
       all.push_back(frame.time_ms);
       if (frame.substituted > 0) {
         substituted.push_back(frame.time_ms);
@@ -303,7 +304,7 @@ std::optional<bool> has_substituted(Processes processes) {
   return totals.frames_substituted > 0 || totals.draws_substituted > 0;
 }
 
-std::string report_json(Processes processes) {
+std::string report_json(Processes processes, std::size_t most_frames) {
   const Totals totals = totals_of(processes);
   Json report{{report_key::frames, totals.frames},
               {report_key::frames_substituted, totals.frames_substituted},
@@ -329,7 +330,7 @@ std::string report_json(Processes processes) {
       const VolumeCounters& volume = *entry;
       report[report_key::volumes].push_back(report_of(volume, process->pid));
     }
-    for_each_kept_frame(*process, [&](std::uint64_t number, const FrameRecord& frame) {
+    for_each_kept_frame(*process, most_frames, [&](std::uint64_t number, const FrameRecord& frame) {
       report[report_key::frames_detail].push_back(detail_of(number, process->pid, frame));
     });
   }

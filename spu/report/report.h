@@ -42,9 +42,13 @@ bool lost_server(Processes processes);
 /// another machine has that information.
 std::optional<bool> has_substituted(Processes processes);
 
-/// The report as indented JSON with a closing newline. Processes that neither drew nor called OpenGL are
-/// omitted.
-std::string report_json(Processes processes);
+/// The report as indented JSON with a closing newline, with the last `most_frames` frames of each process.
+/// Processes that neither drew nor called OpenGL are omitted.
+std::string report_json(Processes processes, std::size_t most_frames = max_frame_records);
+
+/// The same about this process while it runs, for any thread. Figures that change in the meantime may belong to
+/// two frames.
+std::string running_report_json(std::size_t most_frames);
 
 /// "understudy: 1 volume, 20 frames: 19 substituted (4 nodes), 1 not substituted (reason, …)".
 std::string summary_line(Processes processes);

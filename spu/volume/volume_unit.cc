@@ -47,6 +47,7 @@ struct VolumeUnit::Recognised {
 VolumeUnit::VolumeUnit(Chain& chain, std::shared_ptr<RenderSession> session)
     : DrawObserver(chain),
       session_(std::move(session)),
+      settings_(session_ ? session_->wanted_settings().get() : LiveSettings()),
       volumes_(chain.group(), session_),
       frame_started_(Clock::now()) {}
 
@@ -93,6 +94,15 @@ void VolumeUnit::fill(Phase phase, DispatchTable& table) {
   if (phase == Phase::deferring) fill_deferring_slots(table);
 }
 
+bool VolumeUnit::leaves_all(const Pipeline& pipeline) {
+  if (settings_.substitutes) return false;
+  const GLuint texture = pipeline.volume.texture;
+  // Of textures that may be a stack, only those that were one are counted.
+  if (!pipeline.stack || volumes_.find(texture) != nullptr)
+    volumes_.leave_in_this_frame(texture, "switched off with understudy ctl", stages().account);
+  return true;
+}
+
 void VolumeUnit::refuse_in_this_frame(GLuint texture, const Refusal& refusal) {
   // One line for all bricks of a volume.
   const MergedVolume* const merged = stages().merged.volume_with(texture);
@@ -115,10 +125,13 @@ bool VolumeUnit::substitutes(std::unique_ptr<Run>& run) {
   const FrameShares spent = account.clock().take();
   account.note([&](FrameRecord& frame) { frame.spent_ms += spent; });
   // No volume is found for a stack of textures that turned out not to be one.
-  if (run == nullptr)
+  if (run == nullptr) {
     stages().merger.count_held(spent);
-  else if (KnownVolume* const volume = volumes_.find(texture))
-    count_speed(*volume, shown, spent, volume->verified.schedule.native_ms(), session_->options());
+    return shown;
+  }
+  KnownVolume* const volume = volumes_.find(texture);
+  const bool guarded = session_->options().speed_guard && !settings_.tint;
+  if (volume != nullptr && guarded) count_speed(*volume, shown, spent, volume->verified.schedule.native_ms());
   return shown;
 }
 
@@ -222,9 +235,9 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
   volume.verified.schedule.begin(image.inputs, volume::footprint(request, request.region).pixels(),
                                  sample_density(request));
   const bool compared_whole = stages.verifier.whole_due(volume.verified, image.eye_inside, volume.frames);
-  const Options& options = session_->options();
+  const LiveSettings& settings = session_->settings();
   // An image within a budget is not compared with the viewer's: its error is measured, if that was requested.
-  const bool measured = options.has_budget() ? options.error > 0 : volume.verified.schedule.sentinels() > 0;
+  const bool measured = settings.has_budget() ? settings.error > 0 : volume.verified.schedule.sentinels() > 0;
   request.exact = compared_whole || measured;
   std::optional<SceneCandidate> scene = stages.scenes.candidate(run, image, volume);
   const auto check = [&](const volume::ImageView& shown) {
@@ -312,6 +325,7 @@ void VolumeUnit::export_scenes() {
 
 void VolumeUnit::frame_ended(FrameEnd kind) {
   export_scenes();
+  if (kind != FrameEnd::wait) take_settings();
   // Another context may sample a depth texture that is attached here.
   if (kind == FrameEnd::make_current) depth_looked_at(deferred_depth.take_textures(std::nullopt));
   if (kind != FrameEnd::swap && kind != FrameEnd::finish) return;
@@ -325,6 +339,13 @@ void VolumeUnit::frame_ended(FrameEnd kind) {
   if (!volumes_.empty() || !stacks.frame_without_volume()) return;
   end_stack_watch();
   if (chain().phase() == Phase::watching && !chain().group().has_volumes()) chain().set_phase(Phase::plain);
+}
+
+void VolumeUnit::take_settings() {
+  const std::uint64_t version = session_->wanted_settings().version();
+  if (version == settings_version_) return;
+  settings_version_ = version;
+  settings_ = session_->take_wanted_settings();
 }
 
 void VolumeUnit::forget_deleted_volumes() {

@@ -21,6 +21,7 @@
 
 #include "spu/volume/known_volumes/known_volumes.h"
 #include "spu/volume/observation/draw_observer.h"
+#include "spu/volume/session/live_settings.h"
 
 namespace understudy::spu {
 
@@ -53,6 +54,7 @@ class VolumeUnit final : public DrawObserver {
   struct Recognised;
 
   std::optional<Refusal> standing_refusal(GLuint texture, GLuint program) override;
+  bool leaves_all(const Pipeline& pipeline) override;
   void refuse_in_this_frame(GLuint texture, const Refusal& refusal) override;
   bool substitutes(std::unique_ptr<Run>& run) override;
   Phase resting_phase() const override;
@@ -76,8 +78,11 @@ class VolumeUnit final : public DrawObserver {
   void forget_deleted_volumes();
   /// Saves the scenes of the frame that ends.
   void export_scenes();
+  void take_settings();
 
   std::shared_ptr<RenderSession> session_;
+  LiveSettings settings_;  ///< in effect since the end of this context's last frame
+  std::uint64_t settings_version_ = 0;
   KnownVolumes volumes_;
   std::unique_ptr<Stages> stages_;
   bool defers_window_depth_ = true;

@@ -29,6 +29,7 @@ struct BudgetAsked {
   bool may_halve = false;  ///< nodes exchange floats, which may become half floats
 
   bool any() const { return error > 0 || ms > 0; }
+  bool operator==(const BudgetAsked&) const = default;
 };
 
 /// Width in texels of the ghost layer that each node holds, so that segments of other settings fit.
@@ -37,6 +38,8 @@ constexpr int budget_ghost_layer = 5;
 class Budget {
  public:
   explicit Budget(const BudgetAsked& asked) : asked_(asked) {}
+
+  const BudgetAsked& asked() const { return asked_; }
 
   /// Returns the request to render in place of `own`. Empty, with the reason in `counters`, if the samples must
   /// stay the application's own because of `obstacle` or of the request itself. May render and integrate in

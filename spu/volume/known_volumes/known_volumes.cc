@@ -15,6 +15,12 @@ namespace {
 /// Frames until a volume is tried again, by the number of failed comparisons in a row.
 constexpr std::array<std::uint64_t, 4> pauses = {1, 1, 4, 16};
 
+void count_left(KnownVolume& volume, std::string_view reason, FrameAccount& account) {
+  account.note([](FrameRecord& frame) { ++frame.left; });
+  volume.counters->draws_left.fetch_add(1, std::memory_order_relaxed);
+  count_reason(*volume.counters, reason);
+}
+
 }  // namespace
 
 KnownVolumes::KnownVolumes(ShareGroup& group, std::shared_ptr<RenderSession> session)
@@ -76,9 +82,7 @@ std::optional<Refusal> KnownVolumes::standing_refusal(GLuint texture) {
 
 void KnownVolumes::refuse(GLuint texture, const Refusal& refusal, FrameAccount& account, bool say) {
   KnownVolume& volume = of(texture);
-  account.note([](FrameRecord& frame) { ++frame.left; });
-  volume.counters->draws_left.fetch_add(1, std::memory_order_relaxed);
-  count_reason(*volume.counters, refusal.reason);
+  count_left(volume, refusal.reason, account);
   const bool new_reason = std::exchange(volume.refusals.last_reason, refusal.reason) != refusal.reason;
   if (!new_reason || !say) return;
   logging::log(logging::Level::info, "volume {} not substituted: {}", texture, refusal.reason);
@@ -92,6 +96,13 @@ void KnownVolumes::refuse_in_this_frame(GLuint texture, const Refusal& refusal, 
   const std::uint64_t frame = session_->ledger().frames();
   if (of(texture).refusals.left_in_frame != frame) refuse(texture, refusal, account, say);
   of(texture).refusals.left_in_frame = frame;
+}
+
+void KnownVolumes::leave_in_this_frame(GLuint texture, std::string_view reason, FrameAccount& account) {
+  forget_redefined(texture);
+  KnownVolume& volume = of(texture);
+  const std::uint64_t frame = session_->ledger().frames();
+  if (std::exchange(volume.refusals.left_in_frame, frame) != frame) count_left(volume, reason, account);
 }
 
 void KnownVolumes::forget(const KnownVolume& volume) {
@@ -123,9 +134,7 @@ void count_substituted(KnownVolume& volume, const volume::FrameCounts& counts, F
   });
 }
 
-void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, std::optional<double> native_ms,
-                 const Options& options) {
-  if (!options.speed_guard || options.debug_tint) return;
+void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, std::optional<double> native_ms) {
   // Waiting for earlier drawing is not part of the cost of the volume.
   const double ours_ms =
       spent.recognition + spent.upload + spent.render + spent.verification + spent.presentation + spent.budget;

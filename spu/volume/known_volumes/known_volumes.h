@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "spu/volume/known_volumes/known_volume.h"
 #include "spu/volume/verification/verifier.h"
@@ -43,6 +44,9 @@ class KnownVolumes {
 
   /// The same for slices that are drawn one by one and still form one run: once per frame.
   void refuse_in_this_frame(GLuint texture, const Refusal& refusal, FrameAccount& account, bool say = true);
+  /// Counts, once per frame, that the application draws the volume because it was told to (`understudy ctl`).
+  /// Prints nothing, and does not become the reason of later frames.
+  void leave_in_this_frame(GLuint texture, std::string_view reason, FrameAccount& account);
 
   /// Forget volumes whose textures were deleted, or all; the service forgets them, too. Take the session's
   /// lock.
@@ -70,8 +74,7 @@ std::optional<Refusal> speed_refusal(KnownVolume& volume, std::uint64_t state);
 
 /// Reports the time of an attempt to substitute a volume to its speed guard. `native_ms`: what the
 /// application's own drawing would have taken; null: unknown.
-void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, std::optional<double> native_ms,
-                 const Options& options);
+void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, std::optional<double> native_ms);
 
 /// Evaluates a comparison in `frame`. If it failed, the volume is measured anew, and the refusal is thrown that
 /// makes the application draw it.

@@ -17,12 +17,17 @@ using Clock = std::chrono::steady_clock;
 
 }  // namespace
 
+/// The error of an image within a budget is measured instead.
+bool BrickComparison::has_budget() const {
+  const auto lock = session_.lock();
+  return session_.settings().has_budget();
+}
+
 void BrickComparison::begin(const MergedVolume& merged, const Run& run, const volume::RenderRequest& request) {
   end();
   const VerificationSchedule& schedule = merged.volume.verified.schedule;
   const bool whole = verifier_.whole_due(merged.volume.verified, false, merged.volume.frames);
-  // The error of an image within a budget is measured instead.
-  if (!whole && (schedule.sentinels() == 0 || session_.options().has_budget())) return;
+  if (!whole && (schedule.sentinels() == 0 || has_budget())) return;
   const TimedShare timed(account_.clock(), &FrameShares::verification);
   const Pipeline& pipeline = run.pipeline();
   const volume::Rect window = comparable(request.window, request.viewport);

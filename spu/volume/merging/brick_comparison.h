@@ -44,6 +44,9 @@ class BrickComparison {
     double ms = 0;  ///< of the application's own drawing so far
   };
 
+  /// Takes the session's lock.
+  bool has_budget() const;
+
   const GlContext& context_;
   RenderSession& session_;
   Verifier& verifier_;

@@ -46,7 +46,7 @@ volume::VolumeDescription described(const MergedVolume& merged, RenderSession& s
   description.wrap = whole.texture.wrap;
   description.border = whole.texture.border;
   description.stored = {{0, 0, 0}, description.size};
-  if (session.options().has_budget()) description.ghost_layer = budget_ghost_layer;
+  if (session.settings().has_budget()) description.ghost_layer = budget_ghost_layer;
   if (description.id == 0) description.id = session.new_volume_id();
   return description;
 }

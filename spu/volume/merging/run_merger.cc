@@ -151,9 +151,14 @@ void RunMerger::settle() {
   const FrameShares spent = clock.take();
   stages_.account.note([&](FrameRecord& frame) { frame.spent_ms += spent; });
   spent_ += spent;
-  count_speed(merged.volume, trouble == nullptr, std::exchange(spent_, {}), native_ms,
-              stages_.session.options());
+  const FrameShares all_spent = std::exchange(spent_, {});
+  if (speed_is_guarded()) count_speed(merged.volume, trouble == nullptr, all_spent, native_ms);
   if (trouble) std::rethrow_exception(trouble);
+}
+
+bool RunMerger::speed_is_guarded() const {
+  const auto lock = stages_.session.lock();
+  return stages_.session.options().speed_guard && !stages_.session.settings().tint;
 }
 
 std::optional<double> RunMerger::show_held(MergedVolume& merged, std::vector<HeldRun>& held) {

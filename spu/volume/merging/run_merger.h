@@ -79,6 +79,8 @@ class RunMerger {
                                          KnownVolume& volume, const MergedVolume& merged);
   bool goes_with_held(const MergedVolume& merged, const Pipeline& pipeline,
                       const volume::RenderRequest& request) const;
+  /// Takes the session's lock.
+  bool speed_is_guarded() const;
   /// Shows all of `held` as one image, or each by itself. Returns how long the application would have taken for
   /// them; null if that is not known.
   std::optional<double> show_held(MergedVolume& merged, std::vector<HeldRun>& held);

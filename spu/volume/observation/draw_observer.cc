@@ -38,7 +38,7 @@ bool DrawObserver::begins_run() {
     return false;
   }
   auto* const pipeline = std::get_if<Pipeline>(&finding);
-  if (pipeline == nullptr) return false;
+  if (pipeline == nullptr || leaves_all(*pipeline)) return false;
   if (pipeline->stack) {
     if (conditional_render || (transform_feedback && context().version < 400)) return false;
   } else if (const auto refusal = refusal_of(*pipeline)) {

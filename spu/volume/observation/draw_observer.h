@@ -72,6 +72,8 @@ class DrawObserver : public Unit {
   /// Why the volume of `texture` is not substituted with `program`, whatever the run; null if there is no
   /// reason.
   virtual std::optional<Refusal> standing_refusal(GLuint texture, GLuint program) = 0;
+  /// Returns whether the application draws all volumes itself for now; counts this draw then.
+  virtual bool leaves_all(const Pipeline& pipeline) = 0;
   /// No run begins for this reason, which is reported once per frame even if slices are drawn one by one.
   virtual void refuse_in_this_frame(GLuint texture, const Refusal& refusal) = 0;
   /// Returns false if the calls of `run` are to be made; otherwise its image is shown, or `run` is taken and

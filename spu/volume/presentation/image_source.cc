@@ -21,7 +21,7 @@ void RenderedImage::keep() {
 
 bool ImageSource::may_be_late(const ImageToShow& what, const View& view) const {
   const Options& options = session_.options();
-  if (options.has_budget() || !options.save_frames.empty()) return false;
+  if (session_.settings().has_budget() || !options.save_frames.empty()) return false;
   // What is shown together with another image, drawn with this frame's box, or hides what is drawn later by
   // this frame's depth, must be of this frame.
   if (is_finished_here(what.image, what.volume.march.march) || what.pipeline.blending.alpha_stands_apart() ||
@@ -74,17 +74,22 @@ void ImageSource::cast_own_samples(compositor::RenderService& service, const Ima
   if (what.image.ray_caster) what.image.request.depth = what.image.opaque;
 }
 
+void ImageSource::end_budget(KnownVolume& volume) {
+  if (!volume.budget) return;
+  volume.budget.reset();
+  volume.counters->budget = {};
+}
+
 bool ImageSource::cast_within_budget(compositor::RenderService& service, const ImageToShow& what,
                                      RenderedImage& image) {
-  const Options& options = session_.options();
+  const LiveSettings& settings = session_.settings();
   KnownVolume& volume = what.volume;
   BudgetCounters& counters = volume.counters->budget;
   std::optional<volume::RenderRequest> request;
   {
     const TimedShare timed(account_.clock(), &FrameShares::budget);
-    if (!volume.budget)
-      volume.budget =
-          std::make_unique<Budget>(BudgetAsked{options.error, options.time_ms, options.pixels == "float"});
+    const BudgetAsked asked{settings.error, settings.time_ms, session_.options().pixels == "float"};
+    if (!volume.budget || volume.budget->asked() != asked) volume.budget = std::make_unique<Budget>(asked);
     const std::string obstacle = is_finished_here(what.image, volume.march.march)
                                      ? "what rays find is shown by the ray caster's own rules"
                                  : !what.image.ray_ends.empty() ? "planes cut the ray caster's box"

@@ -59,6 +59,8 @@ class ImageSource {
   /// Renders with samples that keep the error or the time that was requested; false if the samples must be the
   /// application's own.
   bool cast_within_budget(compositor::RenderService& service, const ImageToShow& what, RenderedImage& image);
+  /// Called when no error and no time is requested any more.
+  static void end_budget(KnownVolume& volume);
 
  private:
   compositor::Rendered rendered(compositor::RenderService& service, const ImageToShow& what,

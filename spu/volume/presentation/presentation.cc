@@ -45,23 +45,24 @@ volume::Image alpha_of_fragments(const volume::ImageView& shown, const AlphaBlen
 
 volume::FrameCounts Presentation::show(compositor::RenderService& service, const ImageToShow& what,
                                        const Check& check) {
-  const Options& options = session_.options();
+  const LiveSettings& settings = session_.settings();
   volume::RenderRequest& request = what.image.request;
   request.optimizations = {skips(Optimization::empty_bricks), skips(Optimization::dominated_samples),
                            skips(Optimization::footprints)};
   if (!skips(Optimization::hidden_samples)) request.termination = 0;
   RenderedImage image;
-  const bool own = !options.has_budget() || what.compared_whole;
+  if (!settings.has_budget()) ImageSource::end_budget(what.volume);
+  const bool own = !settings.has_budget() || what.compared_whole;
   if (own) {
     source_.cast_own_samples(service, what, image);
     // A late image differs from what the application draws now.
     if (!image.late) check(image.shown);
   }
-  if (options.has_budget() && !source_.cast_within_budget(service, what, image) && !own)
+  if (settings.has_budget() && !source_.cast_within_budget(service, what, image) && !own)
     source_.cast_own_samples(service, what, image);
-  if (options.debug_tint || what.pipeline.blending.alpha_stands_apart()) image.keep();
-  if (!options.save_frames.empty()) save(what, image.shown);
-  if (options.debug_tint) tint(image.kept);
+  if (settings.tint || what.pipeline.blending.alpha_stands_apart()) image.keep();
+  if (!session_.options().save_frames.empty()) save(what, image.shown);
+  if (settings.tint) tint(image.kept);
   const TimedShare timed(account_.clock(), &FrameShares::presentation);
   present(service, what, image);
   note_shown(image);

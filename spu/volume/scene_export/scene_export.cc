@@ -28,8 +28,8 @@ namespace {
 
 /// Why no request gives the whole image of a run; empty if one does.
 std::string obstacle_in(const Run& run, const ImageRequest& image, const KnownVolume& volume,
-                        const Options& options) {
-  if (options.has_budget()) return "its images have the samples of --error or --time, and not the viewer's";
+                        const LiveSettings& settings) {
+  if (settings.has_budget()) return "its images have the samples of --error or --time, and not the viewer's";
   if (image.request.viewport.pixels() > compositor::limits::max_window_pixels)
     return "its viewport has more pixels than an image may have";
   if (run.pipeline().stack) return "it is a stack of 2-D textures, and a scene holds one 3-D texture";

@@ -27,9 +27,19 @@ constexpr auto retry_after = 200ms;
 
 }  // namespace
 
-RenderSession::RenderSession(Options options) : options_(std::move(options)), address_(options_.connect) {}
+RenderSession::RenderSession(Options options)
+    : options_(std::move(options)),
+      wanted_settings_(LiveSettings(options_)),
+      settings_(options_),
+      address_(options_.connect) {}
 
 RenderSession::~RenderSession() = default;
+
+LiveSettings RenderSession::take_wanted_settings() {
+  const auto held = lock();
+  settings_ = wanted_settings_.get();
+  return settings_;
+}
 
 compositor::RenderService& RenderSession::service() {
   if (ended_) throw std::runtime_error("the program is ending");

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "spu/options.h"
+#include "spu/volume/session/live_settings.h"
 #include "spu/volume/timing/frame_ledger.h"
 #include "spu/volume/views/shown_windows.h"
 #include "volume/volume_id.h"
@@ -35,6 +36,13 @@ class RenderSession {
   bool disabled_optimizations(Optimization optimization) const {
     return options_.disabled_optimizations[std::size_t(optimization)];
   }
+
+  /// What is wanted from the end of the frame on; for any thread.
+  WantedSettings& wanted_settings() { return wanted_settings_; }
+  /// What is in effect. Requires the lock.
+  const LiveSettings& settings() const { return settings_; }
+  /// Called at the end of a frame: what is wanted takes effect, in all contexts. Takes the lock.
+  LiveSettings take_wanted_settings();
 
   FrameLedger& ledger() { return ledger_; }
 
@@ -77,6 +85,8 @@ class RenderSession {
   void heard_of_image(std::string_view why_cast);
 
   const Options options_;
+  WantedSettings wanted_settings_;
+  LiveSettings settings_;
   FrameLedger ledger_;
   std::mutex mutex_;
   std::string address_;  ///< of the nodes; empty: embedded

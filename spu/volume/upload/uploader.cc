@@ -82,7 +82,7 @@ volume::VolumeDescription Uploader::described(const TexelsWanted& wanted, const 
   description.border = texture.border;
   description.stored = texels_of(with_slice_segments(wanted.region, wanted.slice_segments), texture.size);
   description.ghost_layer = std::max(wanted.ghost_layer, ghost_layer_of(wanted.slice_segments, texture.size));
-  if (session_.options().has_budget())
+  if (session_.settings().has_budget())
     description.ghost_layer = std::max(description.ghost_layer, budget_ghost_layer);
   if (!kept) return description;
   description.ghost_layer = std::max(description.ghost_layer, sent.description.ghost_layer);

@@ -94,6 +94,12 @@ bool set_server_opengl(Options& options, const std::string& text) {
   return true;
 }
 
+bool set_control(Options& options, const std::string& text) {
+  if (text != "auto" && text != "on" && text != "off") return false;
+  options.control = text;
+  return true;
+}
+
 bool set_sandbox(Options& options, const std::string& text) {
   if (text != "auto" && text != "off") return false;
   options.sandbox = text == "auto";
@@ -174,6 +180,10 @@ constexpr std::array rows{
         set_text<&Options::export_folder>},
     Row{{"--debug-tint", "UNDERSTUDY_DEBUG_TINT", "", "off", "tint the pixels that Understudy drew"},
         set_switch<&Options::debug_tint>},
+    Row{{"--control", "UNDERSTUDY_CONTROL", "auto|on|off", "auto",
+         "let `understudy ctl` control the viewer while it runs; auto (default): under `understudy run`, but "
+         "not with plain LD_PRELOAD"},
+        set_control},
     Row{{"", "UNDERSTUDY_DISABLE", "", "off", "pass every call to the real OpenGL"},
         set_switch<&Options::disable>},
     Row{{"--chain", "UNDERSTUDY_CHAIN", "TEXT", "track volume driver",

@@ -24,6 +24,7 @@ struct Options {
   OptimizationSet disabled_optimizations;
   bool disable = false;
   bool debug_tint = false;
+  std::string control = "auto";   ///< whether `understudy ctl` may control the process: auto, on or off
   bool speed_guard = true;        ///< let the viewer draw if that is faster; never with debug_tint
   double error = 0;               ///< largest error of an image; 0: take the viewer's own samples
   double time_ms = 0;             ///< longest time for an image; 0: take the viewer's own samples
@@ -42,6 +43,9 @@ struct Options {
   std::string remote;                  ///< Unix socket of the GL server that makes the calls; empty: none
   double verify_psnr = 0;              ///< dB; a compared image below this is refused
 
+  bool has_budget() const { return error > 0 || time_ms > 0; }
+  /// Under a launcher, viewers can be controlled unless that was switched off.
+  bool can_be_controlled() const { return control == "on" || (control == "auto" && !run_dir.empty()); }
 };
 
 /// How help and messages present an option.

@@ -13,6 +13,7 @@
 #include "apps/understudy/cli/completion.h"
 #include "apps/understudy/cli/configured_words.h"
 #include "apps/understudy/cli/convert.h"
+#include "apps/understudy/cli/ctl.h"
 #include "apps/understudy/cli/doctor.h"
 #include "apps/understudy/cli/help_layout.h"
 #include "apps/understudy/cli/install_launcher.h"
@@ -65,6 +66,7 @@ int main(int argc, char** argv) try {
   launcher::add_study(app, chosen);
   launcher::add_convert(app, chosen);
   launcher::add_compare(app, chosen);
+  launcher::add_ctl(app, chosen);
   launcher::add_doctor(app, chosen);
   launcher::add_units(app, chosen);
   launcher::add_completion(app, chosen);

@@ -4,6 +4,7 @@
 
 #include <cxxabi.h>
 #include <fmt/format.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include <array>
@@ -18,6 +19,7 @@
 
 #include "compositor/logging/log.h"
 #include "interceptor/core/redraw_request.h"
+#include "interceptor/core/viewer_control.h"
 #include "spu/chain.h"
 #include "spu/lost_context.h"
 #include "spu/options.h"
@@ -131,6 +133,7 @@ class Core {
     if (spu::Chain* chain = spu::Chain::current()) chain->frame_ended(kind);
     if (redraw_ && window != 0) window_shown(window);
     if (reports_itself()) spu::write_report_when_due(options_.report);
+    if (!control_was_tried_.load(std::memory_order_relaxed)) start_control();
   }
 
   /// Another thread may be inside a context's chain, or hold the lock forever: the figures then stay as last
@@ -147,8 +150,15 @@ class Core {
 
   void program_ends() {
     session_->end();
+    if (ViewerControl* const control = control_.load(); control != nullptr && getpid() == process_)
+      control->stop();
     // A forked child must not close its parent's connection.
     if (server_ && getpid() == process_) server_->end();
+  }
+
+  /// Called in a forked child.
+  void leave_control_to_parent() noexcept {
+    if (ViewerControl* const control = control_.exchange(nullptr)) control->leave_to_parent();
   }
 
   /// True if this process has to write the report: there is no launcher that does, and it is not a forked
@@ -185,6 +195,9 @@ class Core {
     return *member;
   }
 
+  /// At the end of the first frame: programs that show nothing get no socket and no thread.
+  void start_control();
+
   void window_shown(std::uintptr_t window) {
     // A forked child has no thread that asks.
     const bool can_ask = getpid() == process_ && redraw_->can_ask(window);
@@ -203,6 +216,8 @@ class Core {
   std::mutex mutex_;
   std::map<std::uintptr_t, std::unique_ptr<Member>> contexts_;
   std::optional<RedrawRequest> redraw_;  ///< set if images may be a frame late
+  std::atomic<bool> control_was_tried_ = false;
+  std::atomic<ViewerControl*> control_ = nullptr;  ///< never destroyed: its thread may still answer
 };
 
 /// The core of this process. Never destroyed: the application may call OpenGL until its very last instruction.
@@ -210,6 +225,18 @@ constinit Core* core = nullptr;
 
 void Core::install(const spu::DispatchTable* table) {
   core->entry_.thread_state()->table = table;
+}
+
+void Core::start_control() {
+  if (control_was_tried_.exchange(true) || !options_.can_be_controlled() || getpid() != process_) return;
+  try {
+    control_ = std::make_unique<ViewerControl>(session_).release();
+    pthread_atfork(nullptr, nullptr, [] { core->leave_control_to_parent(); });
+  } catch (const std::exception& error) {
+    const bool asked_for = options_.control == "on";
+    logging::log(asked_for ? logging::Level::warn : logging::Level::info,
+                 "`understudy ctl` cannot control this viewer: {}", error.what());
+  }
 }
 
 /// From now on the thread's calls go directly to the driver.

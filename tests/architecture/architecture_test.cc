@@ -30,7 +30,7 @@ constexpr std::array<std::string_view, 6> modules{"volume",      "compositor", "
 /// Folders of spu/, lowest first: a folder may include itself and those before it, so there are no cycles.
 constexpr auto spu_folders = std::to_array<std::string_view>({
 
-    "spu/report", "spu", "spu/stream", "spu/window_system",
+    "spu/report", "spu", "spu/control", "spu/stream", "spu/window_system",
     // units
     "spu/driver", "spu/null", "spu/pass", "spu/perf", "spu/print", "spu/track", "spu/pack", "spu/unpack",
     "spu/trace", "spu/remote", "spu/tiles", "spu/plugin",

@@ -37,7 +37,7 @@ class Viewer:
         words = [*before, self.viewer, self.volume, "--size", SIDE, SIDE, SIDE, "--type", "u8", "--offscreen", "--frames", 3, "--orbit", 5,
                  "--window-size", 200, 200, "--mode", mode, "--screenshot", image]
         everything = {name: value for name, value in os.environ.items() if not name.startswith("UNDERSTUDY")}
-        everything |= {"UNDERSTUDY_SPEED_GUARD": "off", "XDG_RUNTIME_DIR": str(self.folder)} | environment
+        everything |= {"UNDERSTUDY_SPEED_GUARD": "off", "UNDERSTUDY_CONTROL": "on", "XDG_RUNTIME_DIR": str(self.folder)} | environment
         return subprocess.run([str(word) for word in words], env=everything, capture_output=True, text=True, errors="replace",
                               timeout=PATIENCE_SECONDS, check=False)
 

@@ -37,6 +37,7 @@
 #include "compositor/logging/log.h"
 #include "compositor/transport/tcp/address.h"
 #include "spu/chain_text.h"
+#include "spu/control/control_folder.h"
 #include "spu/options.h"
 #include "spu/registry/assemble.h"
 #include "spu/report/keys.h"
@@ -452,6 +453,8 @@ int run_planned(const RunArguments& arguments, const std::vector<std::string>& c
   if (server) server->end(server_patience_ms);
   if (relay) relay->end(server_patience_ms);
   nodes.reset();
+  // Viewers that were killed leave their sockets.
+  spu::remove_dead_control_sockets(spu::control_folder());
   const RunFigures figures(folder.path());
   tell_of_a_missing_display(ending, figures);
   tell_what_happened(plan.options, arguments.quiet, folder, figures);

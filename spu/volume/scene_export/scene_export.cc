@@ -65,7 +65,7 @@ std::optional<SceneCandidate> SceneExport::candidate(const Run& run, const Image
   const GLuint texture = run.volume_texture();
   const auto same = [&](const SceneCandidate& kept) { return kept.texture == texture; };
   if (std::ranges::any_of(kept_, same)) return std::nullopt;
-  if (const std::string obstacle = obstacle_in(run, image, volume, options); !obstacle.empty()) {
+  if (const std::string obstacle = obstacle_in(run, image, volume, session_.settings()); !obstacle.empty()) {
     refuse(volume, texture, obstacle);
     return std::nullopt;
   }

@@ -95,7 +95,7 @@ std::ptrdiff_t width(const std::string& line) {
 
 TEST_F(UnderstudyRun, HelpFitsIntoAHundredColumns) {
   for (const char* const subcommand : {"", "run", "serve", "replay", "print", "trim", "render", "view", "study",
-                                       "compare", "key", "doctor", "units", "completion"}) {
+                                       "compare", "ctl", "key", "doctor", "units", "completion"}) {
     const Result help = understudy(std::string(subcommand) + " --help");
     EXPECT_EQ(help.status, 0) << subcommand;
     std::istringstream lines(help.output);

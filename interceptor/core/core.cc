@@ -5,6 +5,7 @@
 #include <cxxabi.h>
 #include <fmt/format.h>
 #include <pthread.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <array>
@@ -227,13 +228,27 @@ void Core::install(const spu::DispatchTable* table) {
   core->entry_.thread_state()->table = table;
 }
 
+/// A thread reserves more than a hundred MiB of it for its stack and its memory, and drivers crash where they
+/// find none.
+bool address_space_is_limited() {
+  rlimit limit{};
+  return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
+
 void Core::start_control() {
   if (control_was_tried_.exchange(true) || !options_.can_be_controlled() || getpid() != process_) return;
+  const bool asked_for = options_.control == "on";
+  if (!asked_for && address_space_is_limited()) {
+    logging::log(
+        logging::Level::info,
+        "`understudy ctl` cannot control this viewer, because `ulimit -v` limits its address space, of "
+        "which a thread takes much; --control on does it all the same");
+    return;
+  }
   try {
     control_ = std::make_unique<ViewerControl>(session_).release();
     pthread_atfork(nullptr, nullptr, [] { core->leave_control_to_parent(); });
   } catch (const std::exception& error) {
-    const bool asked_for = options_.control == "on";
     logging::log(asked_for ? logging::Level::warn : logging::Level::info,
                  "`understudy ctl` cannot control this viewer: {}", error.what());
   }

@@ -216,6 +216,17 @@ TEST_F(ControlledViewer, HasNoSocketIfThatIsSwitchedOff) {
   end();
 }
 
+TEST_F(ControlledViewer, LeavesALimitedAddressSpaceToTheDriver) {
+  const Words limited = Words{"sh", "-c", "ulimit -v 16000000 && exec \"$@\"", "sh"} + viewer();
+  start({}, limited);
+  EXPECT_THAT(child_->err(), HasSubstr("`ulimit -v`"));
+  EXPECT_FALSE(fs::exists(folder()));
+  end();
+  start({"--control", "on"}, limited);
+  EXPECT_TRUE(fs::exists(folder()));
+  end();
+}
+
 TEST_F(ControlledViewer, WithoutALauncherHasASocketOnlyIfThatIsAskedFor) {
   const auto preloaded = [&](const std::string& control, int frames) {
     return command_of(viewer({}, frames),

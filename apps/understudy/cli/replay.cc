@@ -53,7 +53,7 @@ int replay(const ReplayArguments& replay, RunArguments arguments) {
 
 void add_replay(CLI::App& app, std::function<int()>& chosen) {
   // These have a different meaning for a replay, or none.
-  constexpr std::array<std::string_view, 3> without = {"--save-frames", "--chain", "--sandbox"};
+  constexpr std::array<std::string_view, 4> without = {"--save-frames", "--chain", "--sandbox", "--control"};
   const auto own = std::make_shared<ReplayArguments>();
   const auto arguments = std::make_shared<RunArguments>();
   CLI::App* subcommand =

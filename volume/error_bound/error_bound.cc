@@ -223,8 +223,9 @@ class BoundWalk {
     if (bounds.depth == 0 && bounds.glow == 0) return 0;
     add_parts(ray, from, to);
     const double in_front = image_.transparency;
-    show_sample(place, length);
-    return in_front * (rounding_of_sample + rounding_in_image(place, length, rounding_of(near)));
+    const double clear = show_sample(place, length);
+    return in_front * (rounding_of_sample + rounding_of_length(clear, length) +
+                       rounding_in_image(place, length, rounding_of(near)));
   }
 
   /// Bounds the change of a sample's contribution if its place changes by `rounding`.
@@ -236,16 +237,27 @@ class BoundWalk {
            (1 - std::exp(-length * bounds.depth)) * colour;
   }
 
-  /// Composites what the image shows of a sample.
-  void show_sample(double place, double length) {
+  /// Bounds the change of the transparency of a segment shorter than a step if that of the whole step, `clear`,
+  /// is rounded: where that is nearly 0, a small power of it is not.
+  double rounding_of_length(double clear, double length) const {
+    if (length >= 1) return 0;
+    constexpr double rounding = 2.5e-7;
+    const double highest = std::pow(clear + rounding, length);
+    const double lowest = std::pow(std::max(clear - rounding, 0.0), length);
+    return std::max(1.0, medium_.brightest()) * (highest - lowest);
+  }
+
+  /// Composites what the image shows of a sample. Returns the transparency of a whole step.
+  double show_sample(double place, double length) {
     const std::size_t entry = entry_of(place);
     const float* const row = table_.rows() + 8 * entry;
     const double share = place - double(entry);
     const double alpha = std::min(1.0, double(row[3]) + share * double(row[7]));
-    if (alpha <= 0) return;
+    if (alpha <= 0) return 1;
     std::array<double, 4> plain{0, 0, 0, 1};
     for (std::size_t c = 0; c < 3; ++c) plain[c] = (double(row[c]) + share * double(row[4 + c])) / alpha;
     image_.put_behind(plain, alpha < 1 ? std::exp(length * std::log1p(-alpha)) : 0);
+    return 1 - alpha;
   }
 
   /// Divides a stretch of a ray at the faces of cells, and into parts of at most a quarter of a step.

@@ -90,7 +90,8 @@ std::string sentence_of(const BudgetCounters& budget) {
   } else {
     asked = fmt::format("time asked {:.4g} ms, taken {:.4g} ms", budget.asked_ms, budget.ms);
   }
-  if (budget.calibrations > 0)
+  // A run may end before the first calibration does.
+  if (budget.setting[0] != '\0')
     asked += fmt::format(", {} {:.4f} ({:.3g} ms an image, {})",
                          budget.asked_error > 0 ? "measured" : "error measured", budget.measured, budget.ms,
                          text_in(budget.setting));

@@ -90,10 +90,11 @@ std::string summary_text(const RunningViewer& viewer) {
   std::string text = fmt::format("{:<8}{}, since {}, {}\n", viewer.process, viewer.program(),
                                  summary[key::since].is_string() ? summary[key::since].get<std::string>() : "?",
                                  settings_text(summary[key::control]));
-  text += fmt::format("        {} frames: {} substituted, {} not substituted; {} nodes; {} a frame",
+  text += fmt::format("        {} frames: {} substituted, {} not substituted; {} a frame",
                       count(report_key::frames), count(report_key::frames_substituted),
-                      count(report_key::frames_left), count(report_key::nodes),
-                      milliseconds(value(summary, "/time_ms/frame_median")));
+                      count(report_key::frames_left), milliseconds(value(summary, "/time_ms/frame_median")));
+  if (const std::uint64_t nodes = count(report_key::nodes); nodes > 0)
+    text += fmt::format(" on {} node{}", nodes, nodes == 1 ? "" : "s");
   if (const Json& ratio = summary["time_ratio"]; ratio.is_number())
     text += fmt::format(", substituted ones {:.2f} times the viewer's own", number(ratio));
   if (const Json& tile = summary[report_key::worst_tile]; tile.is_number())

@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <functional>
+#include <limits>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -92,13 +94,8 @@ struct Outcome {
   double error = 0;  ///< largest of the integrated pixels
 };
 
-Outcome outcome_of(unsigned seed) {
-  Random random(seed);
-  Texture texture = random_texture(random);
-  const TransferFunction of_voxel = random_table(random);
-  const double step = one_of(random, {0.125, 0.25, 0.5, 1.0, 2.0, 4.0});
-  const OrbitCamera camera{uniform(random, -180, 180), uniform(random, -80, 80),
-                           one_of(random, {0.4, 1.5, 3.0, 8.0})};
+Outcome outcome_of(Texture texture, const TransferFunction& of_voxel, double step, const OrbitCamera& camera,
+                   const std::string& scene) {
   RenderRequest request = bound_request(texture, of_voxel, camera, step);
   const RenderRequest unit = orbit_request(texture.description, {1, 1, 1}, camera, 24, 20, 1);
 
@@ -127,11 +124,24 @@ Outcome outcome_of(unsigned seed) {
       for (std::size_t k = 0; k < 4; ++k)
         error = std::max(error, std::abs(double(image.at(x, y)[k]) - exact[k]));
       // The reference's own error is at most a hundredth of a bound, or 1e-7.
-      EXPECT_LE(error, bound + std::max(0.01 * bound, 1e-7))
-          << "scene " << seed << ", pixel " << x << ", " << y;
+      EXPECT_LE(error, bound + std::max(0.01 * bound, 1e-7)) << scene << ", pixel " << x << ", " << y;
       outcome.error = std::max(outcome.error, error);
     }
   return outcome;
+}
+
+Outcome outcome_of(unsigned seed) {
+  Random random(seed);
+  Texture texture = random_texture(random);
+  const TransferFunction of_voxel = random_table(random);
+  const double step = one_of(random, {0.125, 0.25, 0.5, 1.0, 2.0, 4.0});
+  const OrbitCamera camera{uniform(random, -180, 180), uniform(random, -80, 80),
+                           one_of(random, {0.4, 1.5, 3.0, 8.0})};
+  return outcome_of(std::move(texture), of_voxel, step, camera, "scene " + std::to_string(seed));
+}
+
+TransferFunction uniform_table(float opacity) {
+  return {0, 1, {{opacity, opacity, opacity, opacity}, {opacity, opacity, opacity, opacity}}};
 }
 
 void expect_certified(unsigned scenes) {
@@ -157,6 +167,45 @@ TEST(ErrorBound, HoldsInRandomScenes) {
 
 TEST(FullErrorBound, HoldsInAThousandRandomScenes) {
   expect_certified(1000);
+}
+
+TEST(ErrorBound, HoldsBesideTexelsThatAreNotNumbers) {
+  Texture texture = sampled(describe({17, 17, 17}, TexelType::f32), sphere_field(0.4, 0.2));
+  constexpr std::size_t half = sizeof(float) * 17 * 17 * 9;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (std::size_t at = half; at + sizeof nan <= texture.texels.size(); at += sizeof nan)
+    std::memcpy(texture.texels.data() + at, &nan, sizeof nan);
+  for (const float opacity : {0.1F, 1.0F})
+    for (const double step : {0.5, 4.0}) {
+      const Outcome outcome = outcome_of(texture, uniform_table(opacity), step, {20, 35, 3}, "beside NaN");
+      std::printf("opacity %g, step %g: bound %.2e, error %.2e\n", double(opacity), step, outcome.bound,
+                  outcome.error);
+    }
+}
+
+/// Rays cross faces of cells across x and y at once, next to opaque values.
+TEST(ErrorBound, HoldsAlongDiagonals) {
+  const Texture texture = sampled(describe({17, 17, 17}, TexelType::u8), sphere_field(0.4, 0.2));
+  TransferFunction table;
+  for (int i = 0; i < 16; ++i) {
+    const auto alpha = i < 6 ? 0.0F : i > 9 ? 1.0F : float(i - 5) / 5;
+    table.entries.push_back({alpha, 0.5F * alpha, 0, alpha});
+  }
+  for (const OrbitCamera& camera : {OrbitCamera{-45, 0, 2}, OrbitCamera{135, 0, 2}, OrbitCamera{0, -45, 2}}) {
+    const Outcome outcome = outcome_of(texture, table, 1, camera, "diagonal");
+    EXPECT_LE(outcome.bound, 1.0001) << camera.azimuth;
+    EXPECT_GT(outcome.error, 0);
+  }
+}
+
+TEST(ErrorBound, IsForMediaThatHaveAPlainColour) {
+  Texture texture = noise(describe({9, 9, 9}, TexelType::u8), 3);
+  texture.description.ghost_layer = 8;
+  const BrickStore store = filled(texture);
+  TransferFunction emission = uniform_table(0.5F);
+  emission.entries[0][3] = 0;
+  const RenderRequest request = bound_request(texture, emission, {}, 1);
+  EXPECT_THROW(error_bounds(store, FieldVariation(store), request, 1), std::invalid_argument);
 }
 
 TEST(ErrorBound, FallsWithTheStepWhereAllIsSmooth) {

@@ -96,14 +96,20 @@ class BoundWalk {
         scale_(double(table_.scale())),
         field_(field),
         medium_(medium),
-        termination_(termination) {}
+        termination_(termination),
+        brightest_(std::max(1.0, medium.brightest())) {
+    // Start, step and their sum are rounded, each to floats of the lattice's extent.
+    constexpr double ulp = 1.0 / (1 << 24);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      position_rounding_[axis] = std::max(1e-5, 6 * ulp * double(scene.store->lattice().cells[axis]));
+  }
 
   /// Bound of the error of samples `first` to `last`, and their least opacity. If the ray continues in cells of
   /// other ranks, anything may follow.
   std::array<double, 2> bound(const Ray& ray, int first, int last, float last_length) {
     parts_.clear();
     image_ = {};
-    double rounding = first == 0 ? rounding_of_ray : 0;  // once for all ranks' samples of a ray
+    double rounding = first == 0 ? brightest_ * rounding_of_ray : 0;  // once for all ranks' samples of a ray
     for (int k = first; k <= last && image_.transparency >= double(termination_); ++k) {
       rounding += add_segment(ray, k, k == last ? double(last_length) : 1);
       // A segment extends at most one step before its sample and one step behind it.
@@ -164,23 +170,23 @@ class BoundWalk {
 
   /// `open`: something unknown may follow.
   Total total(bool ended, bool open) {
-    const double brightest = std::max(1.0, medium_.brightest());
     Total found;
-    double unsampled = ended ? brightest : 0, transparency = 1, most_transparent = 1;
+    double unsampled = ended ? brightest_ : 0, transparency = 1, most_transparent = 1;
     Behind behind;
     behind.open = open ? 1 : 0;
     for (auto part = parts_.rbegin(); part != parts_.rend(); ++part) {
-      part->off = part->transparency_off * behind.farthest_from(part->plain, brightest) + part->colour_off;
+      part->off = part->transparency_off * behind.farthest_from(part->plain, brightest_) + part->colour_off;
       found.off_of_parts = part->off + part->most_transparent() * found.off_of_parts;
       most_transparent *= part->most_transparent();
       transparency *= part->transparency;
       behind.put_before(*part);
     }
-    found.off = found.off_of_parts + most_transparent * unsampled;
+    // An image may take some samples more than are needed to become opaque.
+    found.off = found.off_of_parts + (most_transparent + image_.transparency) * unsampled;
     found.least_opaque = 1 - most_transparent;
     for (std::size_t k = 0; k < 4; ++k) {
       const double known = behind.shown[k] - image_.shown[k];
-      const double unknown = open ? (transparency - image_.transparency) * (k < 3 ? brightest : 1) : 0;
+      const double unknown = open ? (transparency - image_.transparency) * (k < 3 ? brightest_ : 1) : 0;
       found.apart = std::max({found.apart, std::abs(known), std::abs(known + unknown)});
     }
     return found;
@@ -217,24 +223,28 @@ class BoundWalk {
     const double from = double(k) - (k == 0 ? std::min(0.5, length / 2) : 0.5), to = from + length;
     const Variation near = field_.between(ray.at(from), ray.at(to));
     const float value = sample(ray.at(float(k)));
-    const double place = place_of(value);
+    // A NaN shows nothing.
+    const bool absent = std::isnan(value);
+    const double place = absent ? 0 : place_of(value);
     const double slope = along_part(ray, to - from, near, scale_).slope;
     const MediumBounds& bounds = medium_.around(entry_of(place), slope + rounding_of(near));
-    if (bounds.depth == 0 && bounds.glow == 0) return 0;
+    if (bounds.depth == 0) return 0;
     add_parts(ray, from, to);
     const double in_front = image_.transparency;
-    const double clear = show_sample(place, length);
-    return in_front * (rounding_of_sample + rounding_of_length(clear, length) +
+    const double clear = absent ? 1 : show_sample(place, length);
+    return in_front * (brightest_ * rounding_of_sample + rounding_of_length(clear, length) +
                        rounding_in_image(place, length, rounding_of(near)));
   }
 
   /// Bounds the change of a sample's contribution if its place changes by `rounding`.
   double rounding_in_image(double place, double length, double rounding) const {
     const MediumBounds& bounds = medium_.around(entry_of(place), rounding);
-    const double depth = length * std::min(bounds.depth_range, bounds.depth_slope * rounding);
+    // Near a NaN, the sample may also be absent.
+    const bool near_nan = !std::isfinite(rounding);
+    const double depth =
+        length * (near_nan ? bounds.depth : std::min(bounds.depth_range, bounds.depth_slope * rounding));
     const double colour = std::min(bounds.colour_range, bounds.colour_slope * rounding);
-    return std::max(1.0, medium_.brightest()) * std::min(1.0, depth) +
-           (1 - std::exp(-length * bounds.depth)) * colour;
+    return brightest_ * std::min(1.0, depth) + (1 - std::exp(-length * bounds.depth)) * colour;
   }
 
   /// Bounds the change of the transparency of a segment shorter than a step if that of the whole step, `clear`,
@@ -244,7 +254,7 @@ class BoundWalk {
     constexpr double rounding = 2.5e-7;
     const double highest = std::pow(clear + rounding, length);
     const double lowest = std::pow(std::max(clear - rounding, 0.0), length);
-    return std::max(1.0, medium_.brightest()) * (highest - lowest);
+    return brightest_ * (highest - lowest);
   }
 
   /// Composites what the image shows of a sample. Returns the transparency of a whole step.
@@ -274,6 +284,7 @@ class BoundWalk {
     std::ranges::sort(cuts_);
     for (std::size_t i = 0; i + 1 < cuts_.size(); ++i) {
       const double whole = cuts_[i + 1] - cuts_[i];
+      if (!(whole > 0)) continue;  // a ray may cross faces across two axes at once
       const int count = std::max(1, int(std::ceil(whole / longest_part)));
       for (int j = 0; j < count; ++j)
         parts_.push_back(part_at(ray, cuts_[i] + (j + 0.5) * whole / count, whole / count));
@@ -284,13 +295,15 @@ class BoundWalk {
     const std::array<double, 3> position = ray.at(middle);
     const Variation& near = field_.at(position);
     const AlongPart along = along_part(ray, length, near, scale_);
-    const double place = place_of(sample({float(position[0]), float(position[1]), float(position[2])}));
+    const float value = sample({float(position[0]), float(position[1]), float(position[2])});
     const double rounding = rounding_of(near);
-    const MediumBounds& bounds = medium_.around(entry_of(place), along.slope / 2 + rounding);
     Part part;
     part.middle = middle;
     part.length = length;
-    if (bounds.depth == 0 && bounds.glow == 0) return part;
+    if (std::isnan(value)) return absent_part(ray, part);
+    const double place = place_of(value);
+    const MediumBounds& bounds = medium_.around(entry_of(place), along.slope / 2 + rounding);
+    if (bounds.depth == 0) return part;
 
     const MediumPoint medium = medium_.at(place);
     part.transparency = std::exp(-length * medium.depth);
@@ -305,7 +318,19 @@ class BoundWalk {
     // Infinite or NaN where slopes are steep.
     const double by_depth = part.transparency * std::expm1(off);
     part.transparency_off = by_depth <= most_opaque ? by_depth : most_opaque;
-    part.colour_off = colour_off(along, length, bounds, rounding) + length * bounds.glow;
+    part.colour_off = colour_off(along, length, bounds, rounding);
+    return part;
+  }
+
+  /// A part in a cell with a NaN shows nothing, but its ends are known up to rounding only.
+  Part absent_part(const Ray& ray, Part part) const {
+    double speed = 0;
+    for (const float component : ray.step) speed += std::abs(double(component));
+    const double doubtful = std::min(part.length, speed > 0 ? 1e-3 / speed : part.length);
+    const double depth = medium_.around(0, std::numeric_limits<double>::infinity()).depth;
+    part.plain = {0, 0, 0, 1};
+    part.transparency_off = 1 - std::exp(-doubtful * depth);
+    part.colour_off = brightest_ * part.transparency_off;
     return part;
   }
 
@@ -329,14 +354,15 @@ class BoundWalk {
   }
   /// In entries of the images' function.
   double place_of(float value) const {
-    if (std::isnan(value)) return 0;
     return std::clamp((double(value) - double(table_.low())) * scale_, 0.0, double(table_.last()));
   }
   std::size_t entry_of(double place) const { return std::min(std::size_t(place), table_.entries() - 2); }
   /// How far a sample may be from its place because of rounded positions and values.
   double rounding_of(const Variation& near) const {
-    const double steepest = double(std::max({near.slope[0], near.slope[1], near.slope[2]}));
-    return 1e-5 * steepest * scale_ + 3e-7 * (std::abs(double(table_.low())) * scale_ + double(table_.last())) +
+    double of_position = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      of_position += double(near.slope[axis]) * position_rounding_[axis];
+    return of_position * scale_ + 3e-7 * (std::abs(double(table_.low())) * scale_ + double(table_.last())) +
            1e-6;
   }
 
@@ -354,8 +380,10 @@ class BoundWalk {
   const FieldVariation& field_;
   const MediumVariation& medium_;
   float termination_;
-  Composite image_;          ///< of the current ray, as the image shows it
-  std::vector<Part> parts_;  ///< of the current ray
+  const double brightest_;                     ///< of any channel, at least 1
+  std::array<double, 3> position_rounding_{};  ///< of a sample, in cells
+  Composite image_;                            ///< of the current ray, as the image shows it
+  std::vector<Part> parts_;                    ///< of the current ray
   std::vector<Part> finer_;
   std::vector<double> cuts_;
 };
@@ -447,6 +475,7 @@ MediumVariation variation_of(const MediumFunction& medium, const RenderRequest& 
 
 /// Converts to float, rounding up.
 float upper(double bound) {
+  if (std::isnan(bound)) return std::numeric_limits<float>::infinity();
   return std::nextafter(float(bound), std::numeric_limits<float>::max());
 }
 

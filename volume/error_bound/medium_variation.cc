@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace understudy::volume {
 namespace {
@@ -34,7 +35,6 @@ struct MediumVariation::Piece {
   PlainColour low{}, high{};              ///< X at its ends
   PlainColour slope_low{}, slope_high{};  ///< X' at its ends
   double colour_curve = 0;                ///< the greatest |X''|
-  double glow = 0;
 };
 
 namespace {
@@ -53,14 +53,10 @@ double slope_of_depth(double step, double opacity, double rise) {
 }
 
 template <typename Piece>
-void set_colours(const std::array<double, 4>& low, const std::array<double, 4>& high, double step,
-                 Piece& piece) {
+void set_colours(const std::array<double, 4>& low, const std::array<double, 4>& high, Piece& piece) {
   const double a = std::min(low[3], 1.0), b = std::min(high[3], 1.0);
   piece.visible = a > 0 || b > 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    // A homogeneous step adds c K / a, and c step where a is 0.
-    if (a == 0) piece.glow = std::max(piece.glow, step * low[k]);
-    if (b == 0) piece.glow = std::max(piece.glow, step * high[k]);
     if (!piece.visible) continue;
     piece.low[k] = a > 0 ? low[k] / a : high[k] / b;
     piece.high[k] = b > 0 ? high[k] / b : low[k] / a;
@@ -68,7 +64,7 @@ void set_colours(const std::array<double, 4>& low, const std::array<double, 4>& 
     double numerator = (high[k] - low[k]) * a - low[k] * (b - a);
     if (std::abs(numerator) <= 4e-7 * (std::abs(high[k] * a) + std::abs(low[k] * b))) numerator = 0;
     const auto slope = [&](double opacity) {
-      if (numerator == 0) return 0.0;
+      if (numerator == 0) return piece.high[k] - piece.low[k];
       return opacity > 0 ? capped(numerator / (opacity * opacity)) : std::copysign(steepest_counted, numerator);
     };
     piece.slope_low[k] = slope(a);
@@ -95,7 +91,7 @@ Piece piece_of(const TransferFunction& function, double step, std::size_t entry,
   piece.depth_curve =
       std::max(piece.depth_slope_low * piece.depth_slope_low, piece.depth_slope_high * piece.depth_slope_high) /
       step;
-  set_colours(low, high, step, piece);
+  set_colours(low, high, piece);
   return piece;
 }
 
@@ -124,7 +120,6 @@ void fill_invisible(std::vector<Piece>& pieces) {
 struct Extremes {
   double depth = 0, least_depth = infinite, depth_slope = 0, colour_slope = 0;
   double depth_curve = 0, colour_curve = 0;
-  double glow = 0;
   PlainColour low{infinite, infinite, infinite}, high{-infinite, -infinite, -infinite};
 
   void add(const Extremes& other) {
@@ -134,7 +129,6 @@ struct Extremes {
     colour_slope = std::max(colour_slope, other.colour_slope);
     depth_curve = std::max(depth_curve, other.depth_curve);
     colour_curve = std::max(colour_curve, other.colour_curve);
-    glow = std::max(glow, other.glow);
     for (std::size_t k = 0; k < 3; ++k) {
       low[k] = std::min(low[k], other.low[k]);
       high[k] = std::max(high[k], other.high[k]);
@@ -151,7 +145,6 @@ Extremes extremes_of(const Piece& piece, const Piece* before) {
   all.colour_slope = std::max(greatest_channel(piece.slope_low), greatest_channel(piece.slope_high));
   all.depth_curve = piece.depth_curve;
   all.colour_curve = piece.colour_curve;
-  all.glow = piece.glow;
   for (std::size_t k = 0; k < 3; ++k) {
     all.low[k] = std::min(piece.low[k], piece.high[k]);
     all.high[k] = std::max(piece.low[k], piece.high[k]);
@@ -228,7 +221,6 @@ class MediumVariation::Ranges {
     bounds.colour_range = greatest_channel(colour_difference(all.high, all.low));
     bounds.colour_slope = all.colour_slope;
     bounds.colour_curve = all.colour_curve;
-    bounds.glow = all.glow;
     Kinks kinks = kinks_[end - 1];
     kinks.add(kinks_[first], -1);
     if (below) kinks.add(first_kinks_);
@@ -244,12 +236,28 @@ class MediumVariation::Ranges {
   Kinks first_kinks_, last_kinks_;               ///< at the function's ends
 };
 
+namespace {
+
+void check(const TransferFunction& function) {
+  for (const Rgba& entry : function.entries) {
+    const bool coloured = entry[0] != 0 || entry[1] != 0 || entry[2] != 0;
+    if (std::ranges::min(entry) < 0 || entry[3] > 1 || (entry[3] == 0 && coloured))
+      throw std::invalid_argument(
+          "bounds of the error are for media whose opacities lie in [0, 1], without negative colours and "
+          "without "
+          "colour where the opacity is 0");
+  }
+}
+
+}  // namespace
+
 MediumVariation::MediumVariation(const TransferFunction& function, double step,
                                  const TransferFunction& of_images)
     : function_(function),
       step_(step),
       in_function_(double(function.entries.size() - 1) / double(of_images.entries.size() - 1)),
       entries_(of_images.entries.size()) {
+  check(function);
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i + 1 < entries_; ++i) {
     pieces.push_back(piece_of<Piece>(function, step, i, in_function_));

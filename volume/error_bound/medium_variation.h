@@ -32,7 +32,6 @@ struct MediumBounds {
   double colour_slope = 0;
   double colour_curve = 0;
   double colour_kinks = 0;
-  double glow = 0;  ///< the greatest colour that a step adds where opacity is 0
 };
 
 /// The medium at one value.
@@ -43,7 +42,9 @@ struct MediumPoint {
 
 class MediumVariation {
  public:
-  /// `of_images` must be `function` corrected to `step` by opacity_corrected().
+  /// `of_images` must be `function` corrected to `step` by opacity_corrected(). Throws std::invalid_argument if
+  /// an entry of `function` has a negative component, an opacity above 1, or a colour without opacity: what
+  /// emits without absorbing has no plain colour.
   MediumVariation(const TransferFunction& function, double step, const TransferFunction& of_images);
 
   /// Bounds over at least all values up to `radius` away from those between entries `entry` and `entry` + 1.

@@ -33,7 +33,7 @@ double next_step(double step, double bound, double error) {
 BoundFigures bound_figures(const volume::ImageView& image) {
   std::vector<double> bounds;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4)
-    if (image.rgba[i] > 0) bounds.push_back(std::min(double(image.rgba[i]), 1.0));  // no channel exceeds 1
+    if (!(image.rgba[i] <= 0)) bounds.push_back(std::min(1.0, double(image.rgba[i])));  // no channel exceeds 1
   if (bounds.empty()) return {};
   return {*std::ranges::max_element(bounds), median(bounds), 0};
 }

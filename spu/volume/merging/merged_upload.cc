@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/merging/merged_upload.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -46,7 +47,8 @@ volume::VolumeDescription described(const MergedVolume& merged, RenderSession& s
   description.wrap = whole.texture.wrap;
   description.border = whole.texture.border;
   description.stored = {{0, 0, 0}, description.size};
-  if (session.settings().has_budget()) description.ghost_layer = budget_ghost_layer;
+  if (session.settings().has_budget())
+    description.ghost_layer = std::max(description.ghost_layer, budget_ghost_layer);
   if (description.id == 0) description.id = session.new_volume_id();
   return description;
 }
@@ -57,7 +59,9 @@ void upload_merged(const GlContext& context, ShareGroup& group, RenderSession& s
                    FrameAccount& account, MergedVolume& merged, std::span<const BrickVersion> bricks,
                    const SampledTexture& sampled, compositor::RenderService& service) {
   SentVolume& whole = merged.volume.sent;
-  const bool kept = whole.generation == session.generation();
+  volume::VolumeDescription wanted = described(merged, session);
+  const bool kept =
+      whole.generation == session.generation() && wanted.ghost_layer == whole.description.ghost_layer;
   const std::vector<volume::TexelBox> changed = changed_texels(group, merged, bricks);
   std::vector<std::uint64_t> versions = merged.versions;
   for (const BrickVersion& brick : bricks) versions[*merged.place_of(brick.texture)] = brick.version;
@@ -72,7 +76,6 @@ void upload_merged(const GlContext& context, ShareGroup& group, RenderSession& s
   }
   const TimedShare timed(account.clock(), &FrameShares::upload);
   whole.generation = 0;
-  volume::VolumeDescription wanted = described(merged, session);
   Transferred transferred;
   try {
     SavedState saved(context);

@@ -85,8 +85,9 @@ class RunMerger {
   /// them; null if that is not known.
   std::optional<double> show_held(MergedVolume& merged, std::vector<HeldRun>& held);
   bool shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held);
-  /// The application's own drawing was shown instead of the common image of `held`, which was wrong. The
-  /// bricks' own images are compared before they are shown.
+  /// The bricks' next own images are measured anew and compared before they are shown.
+  static void distrust(const std::vector<HeldRun>& held);
+  /// The application's own drawing was shown instead of the common image of `held`, which was wrong.
   void leave(const std::vector<HeldRun>& held, const Refusal& refusal);
   /// Empty if the image was wrong, and what the application draws was shown instead.
   std::optional<volume::FrameCounts> show_whole(MergedVolume& merged, const std::vector<HeldRun>& held,

@@ -66,7 +66,7 @@ void ControlServer::stop(std::chrono::milliseconds patience) noexcept {
   ::unlink(path_.c_str());
   ::rmdir(folder_.c_str());
   const std::uint64_t once = 1;
-  if (::write(wake_.get(), &once, sizeof once) == sizeof once) end_.wait_for(patience);
+  if (serves_ && ::write(wake_.get(), &once, sizeof once) == sizeof once) end_.wait_for(patience);
 }
 
 void ControlServer::leave_to_parent() noexcept {
@@ -79,6 +79,7 @@ void ControlServer::serve() {
   } catch (const std::exception&) {
     // The viewer can no longer be controlled, and goes on.
   }
+  serves_ = false;
   // Also closes connections that were never accepted.
   listener_fd_ = -1;
   listener_.reset();
@@ -104,6 +105,9 @@ void ControlServer::wait() {
   if (::poll(waiting.data(), waiting.size(), milliseconds_until(first)) < 0 && errno != EINTR)
     throw std::runtime_error(fmt::format("poll failed: {}", std::strerror(errno)));
   if (stopping_) return;
+  // A viewer may close all descriptors that it does not know.
+  if (((wake.revents | listener.revents) & (POLLNVAL | POLLERR | POLLHUP)) != 0)
+    throw std::runtime_error("the viewer has closed the descriptors of its control");
   for (std::size_t i = 0; i < connections_.size(); ++i) {
     if (connections_[i] && !proceed(*connections_[i], waiting[i].revents)) connections_[i].reset();
   }

@@ -75,7 +75,8 @@ class ControlServer {
   std::array<std::optional<Connection>, max_control_connections> connections_;
   compositor::Deadline accepts_from_{};  ///< later if the process has no descriptor left
   std::atomic<bool> stopping_ = false;
-  std::future<void> end_;  ///< of the thread
+  std::atomic<bool> serves_ = true;  ///< false once the thread has ended
+  std::future<void> end_;            ///< of the thread
 };
 
 }  // namespace understudy::spu

@@ -344,8 +344,10 @@ void VolumeUnit::frame_ended(FrameEnd kind) {
 void VolumeUnit::take_settings() {
   const std::uint64_t version = session_->wanted_settings().version();
   if (version == settings_version_) return;
+  const auto taken = session_->take_wanted_settings();
+  if (!taken) return;
   settings_version_ = version;
-  settings_ = session_->take_wanted_settings();
+  settings_ = *taken;
 }
 
 void VolumeUnit::forget_deleted_volumes() {

@@ -35,8 +35,9 @@ RenderSession::RenderSession(Options options)
 
 RenderSession::~RenderSession() = default;
 
-LiveSettings RenderSession::take_wanted_settings() {
-  const auto held = lock();
+std::optional<LiveSettings> RenderSession::take_wanted_settings() {
+  const std::unique_lock held(mutex_, std::try_to_lock);
+  if (!held.owns_lock()) return std::nullopt;
   settings_ = wanted_settings_.get();
   return settings_;
 }

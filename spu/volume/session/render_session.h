@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -41,8 +42,9 @@ class RenderSession {
   WantedSettings& wanted_settings() { return wanted_settings_; }
   /// What is in effect. Requires the lock.
   const LiveSettings& settings() const { return settings_; }
-  /// Called at the end of a frame: what is wanted takes effect, in all contexts. Takes the lock.
-  LiveSettings take_wanted_settings();
+  /// Called at the end of a frame: what is wanted takes effect, in all contexts. Takes the lock; null if
+  /// another thread holds it, whose image may take long.
+  std::optional<LiveSettings> take_wanted_settings();
 
   FrameLedger& ledger() { return ledger_; }
 

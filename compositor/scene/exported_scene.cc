@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "compositor/scene/json_fields.h"
+#include "compositor/scene/json_limits.h"
 #include "compositor/service/node_protocol.h"
 #include "compositor/service/request_message.h"
 #include "compositor/transport/wire.h"
@@ -53,10 +54,12 @@ const Json& member(const Json& object, const char* name) {
 }
 
 void check_format(const Json& json) {
-  if (!json.is_object() || json.value(format_key, Json()) != format_name)
+  const auto format = json.is_object() ? json.find(format_key) : json.end();
+  if (format == json.end() || !format->is_string() || format->get_ref<const std::string&>() != format_name)
     throw SceneError(fmt::format("it is no scene that `understudy run --export` wrote: '{}' is not '{}'",
                                  format_key, format_name));
   const Json& version = member(json, version_key);
+  if (!version.is_number()) fail_at(version_key, "is not a number");
   if (version != scene_format_version)
     fail_at(version_key,
             fmt::format("is {}; this version of Understudy reads {}", version.dump(), scene_format_version));
@@ -102,6 +105,8 @@ void check_limits(const ExportedScene& scene) {
 }
 
 ExportedScene read_scene(std::string_view text) {
+  JsonLimits limits;
+  Json::sax_parse(text, &limits);
   const Json json = Json::parse(text);
   check_format(json);
   ExportedScene scene;

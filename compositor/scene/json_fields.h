@@ -159,8 +159,9 @@ class JsonReader {
   template <class T>
   static void take(const Json& from, std::vector<T>& values, const std::string& key) {
     if (!from.is_array()) fail_at(key, "is not a list");
-    values.resize(from.size());
-    for (std::size_t i = 0; i < values.size(); ++i) take(from[i], values[i], key);
+    // Elements may be larger than their text: the first wrong one ends it. JsonLimits bounds their number.
+    values.clear();
+    for (const Json& each : from) take(each, values.emplace_back(), key);
   }
   template <class T>
   static void take(const Json& from, std::optional<T>& value, const std::string& key) {

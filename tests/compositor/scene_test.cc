@@ -318,6 +318,34 @@ TEST(Scene, OfOtherJsonIsRefused) {
   EXPECT_NE(message_of(std::string(1000000, '[')), "accepted");
 }
 
+std::string repeated(const std::string& text, std::size_t times) {
+  std::string all;
+  for (std::size_t i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+TEST(Scene, NestedTooDeeplyIsRefusedWhereverItIs) {
+  constexpr std::size_t deep = 200000;
+  const std::string nested = repeated("[", deep) + repeated("]", deep);
+  const std::string objects = repeated("{\"a\":", deep) + "1" + repeated("}", deep);
+  for (const std::string& value : {nested, objects}) {
+    EXPECT_THAT(message_of("{\"format\": " + value + "}"), HasSubstr("nested deeper"));
+    EXPECT_THAT(message_of("{\"format\": \"understudy-scene\", \"version\": " + value + "}"),
+                HasSubstr("nested deeper"));
+    EXPECT_THAT(message_of(value), HasSubstr("nested deeper"));
+  }
+  EXPECT_THAT(message_of("{\"format\": \"understudy-scene\", \"version\": [[1]]}"),
+              HasSubstr("'version' is not a number"));
+}
+
+TEST(Scene, WithTooManyKeysOrPartsIsRefused) {
+  std::string keys;
+  for (int i = 0; i < 65; ++i) keys += fmt::format("{}\"{}\": 0", i > 0 ? ", " : "", i);
+  EXPECT_THAT(message_of("{\"origin\": {" + keys + "}}"), HasSubstr("more than 64 keys"));
+  EXPECT_THAT(message_of("{\"origin\": [" + repeated("{}, ", (1U << 20U)) + "{}]}"),
+              HasSubstr("lists or objects"));
+}
+
 TEST(ColourMap, HasPlainColoursAndOpacitiesAtTheValuesOfTexels) {
   const TransferFunction function{0, 1, {{0, 0, 0, 0}, {0.25F, 0.125F, 0, 0.5F}, {1, 0, 1, 1}}};
   const auto map = ordered_json::parse(*paraview_colour_map(function, TexelType::u8)).at(0);

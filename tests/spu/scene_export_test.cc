@@ -3,12 +3,15 @@
 // what the application drew; what a scene cannot hold is not exported, with the reason.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "apps/understudy/file_scene/scene_file.h"
@@ -21,6 +24,7 @@
 #include "spu/report/counters.h"
 #include "spu/volume/scene_export/scene_files.h"
 #include "tests/apps/viewer/temporary_folder.h"
+#include "volume/file/file_error.h"
 
 namespace understudy::spu::testing {
 namespace {
@@ -204,6 +208,50 @@ TEST_F(ExportedScenes, HaveNumbersThatProcessesOfARunDoNotShare) {
   EXPECT_TRUE(claim_scene(folder, run, 1));
 }
 
+TEST_F(ExportedScenes, OfAnEarlierRunAreRemovedWhenTheirNumberIsTaken) {
+  fs::create_directories(file(""));
+  const std::string folder = file("").string(), run = "/run/understudy-1";
+  const SceneFiles files = scene_files(1);
+  const auto leave_files = [&] {
+    std::ofstream(file(files.scene)) << "{}";
+    std::ofstream(file(files.colour_map)) << "[]";
+  };
+  leave_files();
+  ASSERT_TRUE(claim_scene(folder, run, 1));
+  EXPECT_FALSE(fs::exists(file(files.scene)));
+  EXPECT_FALSE(fs::exists(file(files.colour_map)));
+  leave_files();
+  ASSERT_FALSE(claim_scene(folder, run, 1));
+  EXPECT_TRUE(fs::exists(file(files.scene))) << "it is another process's";
+}
+
+class Zeros : public TexelSource {
+ public:
+  void read(const volume::TexelBox&, std::span<std::byte> texels) override {
+    std::ranges::fill(texels, std::byte{0});
+  }
+};
+
+TEST_F(ExportedScenes, BeyondTheLimitOfFilesAreNotWritten) {
+  compositor::ExportedScene scene;
+  scene.volume.size = {64, 64, 64};
+  Zeros zeros;
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  rlimit low = before;
+  low.rlim_cur = 64 * 64 * 64 - 1;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &low), 0);
+  std::string message;
+  try {
+    write_scene(file("").string(), scene_files(1), scene, zeros, {});
+  } catch (const volume::FileError& error) {
+    message = error.what();
+  }
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  EXPECT_THAT(message, HasSubstr("ulimit -f"));
+  EXPECT_EQ(files(), 0U);
+}
+
 TEST_F(ExportedScenes, OfAStackOfTexturesIsRefused) {
   const auto app = start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
@@ -256,6 +304,46 @@ TEST_F(ExportedScenes, OfTexelsThatChangeBeforeTheFrameEndsWaitsForAnotherFrame)
   ASSERT_EQ(app->substituted(), 1U) << app->last_reason();
   EXPECT_THAT(std::string(GlApplication::last_volume().not_exported),
               HasSubstr("changed before the frame ended"));
+  EXPECT_EQ(files(), 0U);
+  scene.draw(*app, 15);
+  app->end_frame();
+  EXPECT_TRUE(fs::exists(file("scene.json"))) << GlApplication::last_volume().not_exported;
+}
+
+TEST_F(ExportedScenes, OfTexelsThatChangeInEveryFrameAreGivenUp) {
+  const auto app = start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = client_arrays_table();
+  scene.set_up(*app);
+  for (std::uint8_t frame = 1; frame <= 4; ++frame) {
+    scene.draw(*app, 15);
+    app->gl().TexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, 1, 1, 1, GL_LUMINANCE, GL_UNSIGNED_BYTE, &frame);
+    app->end_frame();
+    if (frame == 4) break;
+    EXPECT_THAT(std::string(GlApplication::last_volume().not_exported),
+                HasSubstr("changed before the frame ended"));
+  }
+  ASSERT_EQ(app->substituted(), 4U) << app->last_reason();
+  EXPECT_THAT(std::string(GlApplication::last_volume().not_exported), HasSubstr("change in every frame"));
+  scene.draw(*app, 15);
+  app->end_frame();
+  EXPECT_EQ(files(), 0U);
+}
+
+TEST_F(ExportedScenes, UnderPixelTransferWaitsForAnotherFrame) {
+  const auto app = start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = client_arrays_table();
+  scene.set_up(*app);
+  scene.draw(*app, 15);
+  // Ends the run, which is not recognised with such a state.
+  std::array<std::uint8_t, 4> pixel{};
+  app->gl().ReadPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel.data());
+  app->gl().PixelTransferf(GL_RED_SCALE, 0.5F);
+  app->end_frame();
+  app->gl().PixelTransferf(GL_RED_SCALE, 1);
+  ASSERT_EQ(app->substituted(), 1U) << app->last_reason();
+  EXPECT_THAT(std::string(GlApplication::last_volume().not_exported), HasSubstr("pixel transfer"));
   EXPECT_EQ(files(), 0U);
   scene.draw(*app, 15);
   app->end_frame();

@@ -326,10 +326,10 @@ class BoundWalk {
   Part absent_part(const Ray& ray, Part part) const {
     double speed = 0;
     for (const float component : ray.step) speed += std::abs(double(component));
-    const double doubtful = std::min(part.length, speed > 0 ? 1e-3 / speed : part.length);
+    const double uncertain = std::min(part.length, speed > 0 ? 1e-3 / speed : part.length);
     const double depth = medium_.around(0, std::numeric_limits<double>::infinity()).depth;
     part.plain = {0, 0, 0, 1};
-    part.transparency_off = 1 - std::exp(-doubtful * depth);
+    part.transparency_off = 1 - std::exp(-uncertain * depth);
     part.colour_off = brightest_ * part.transparency_off;
     return part;
   }

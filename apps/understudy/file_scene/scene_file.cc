@@ -40,6 +40,10 @@ std::uint64_t slice_bytes(const volume::VolumeDescription& volume) {
 }
 
 void check_size(const std::filesystem::path& texels, const volume::VolumeDescription& volume) {
+  if (slice_bytes(volume) > compositor::limits::max_slice_bytes)
+    fail_scene(texels,
+               fmt::format("a slice of {} x {} texels takes more than {} MiB, the most that is rendered",
+                           volume.size[0], volume.size[1], compositor::limits::max_slice_bytes >> 20U));
   const std::uint64_t wanted = slice_bytes(volume) * std::uint64_t(volume.size[2]);
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(texels, error);

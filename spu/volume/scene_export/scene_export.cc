@@ -26,6 +26,50 @@
 namespace understudy::spu {
 namespace {
 
+/// A volume whose texels change after it is drawn in every frame is given up: each try compares a whole image.
+constexpr int max_in_vain = 4;
+
+/// Filters like level 0 alone: the texture's own filter, which the application's sampler may have replaced,
+/// does not change its texels, and must not make describe_texture() refuse it.
+class PlainSampler {
+ public:
+  /// Binds it to `unit`, if there are samplers.
+  PlainSampler(const GlContext& context, GLuint unit) : gl_(*context.gl) {
+    constexpr int with_samplers = 330;
+    if (context.version < with_samplers) return;
+    gl_.GenSamplers(1, &name_);
+    gl_.SamplerParameteri(name_, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    gl_.SamplerParameteri(name_, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    gl_.BindSampler(unit, name_);
+  }
+  PlainSampler(const PlainSampler&) = delete;
+  PlainSampler& operator=(const PlainSampler&) = delete;
+  /// Whatever unit it is bound to has none then.
+  ~PlainSampler() {
+    if (name_ != 0) gl_.DeleteSamplers(1, &name_);
+  }
+
+ private:
+  const DispatchTable& gl_;
+  GLuint name_ = 0;
+};
+
+/// Whether texels of both are read, and mean, the same. How they are sampled is not compared.
+bool has_same_texels(const TextureDescription& a, const TextureDescription& b) {
+  return a.size == b.size && a.type == b.type && a.held == b.held && a.steps == b.steps && a.base == b.base &&
+         a.opaque == b.opaque && a.grey == b.grey && a.format_name == b.format_name;
+}
+
+/// Whether the texels of a candidate can be read now as they were when it was drawn.
+bool is_readable(const GlContext& context, const SceneCandidate& candidate) {
+  SavedState saved(context);
+  saved.borrow_texture(GL_TEXTURE_3D, 0);
+  context.gl->BindTexture(GL_TEXTURE_3D, candidate.texture);
+  const PlainSampler sampler(context, 0);
+  TextureDescription now;
+  return !describe_texture(context, GL_TEXTURE_3D, 0, now) && has_same_texels(now, candidate.described);
+}
+
 /// Why no request gives the whole image of a run; empty if one does.
 std::string obstacle_in(const Run& run, const ImageRequest& image, const KnownVolume& volume,
                         const LiveSettings& settings) {
@@ -100,16 +144,35 @@ void SceneExport::keep(SceneCandidate candidate) {
   if (!candidate.image.rect.empty()) kept_.push_back(std::move(candidate));
 }
 
-std::string SceneExport::obstacle(const SceneCandidate& candidate, KnownVolume& volume,
-                                  MergedVolumes& merged) const {
+std::string SceneExport::obstacle(const SceneCandidate& candidate, KnownVolume& volume, MergedVolumes& merged) {
   if (!group_.is(candidate.texture, candidate.identity))
     return "its texture was deleted before the frame ended";
   if (merged.is_brick(candidate.texture))
     return "its texture is a brick of a volume in several textures, and a scene holds one texture";
-  if (group_.texture_version(candidate.texture) == candidate.texture_version) return {};
-  // The next image is compared, because only then it may be exported.
-  volume.verified.schedule.ask_for_whole();
-  return "its texels were changed before the frame ended";
+  if (group_.is_rendered_to(candidate.texture))
+    return "its texture is rendered to, so its texels may have changed before the frame ended";
+  if (group_.texture_version(candidate.texture) != candidate.texture_version)
+    return retry_later(candidate, volume, "its texels were changed before the frame ended",
+                       "its texels change in every frame");
+  if (!is_readable(context_, candidate))
+    return retry_later(
+        candidate, volume,
+        "its texture's definition or the pixel transfer state was changed before the frame ended",
+        "its texture's definition or the pixel transfer state changes in every frame");
+  in_vain_.erase(candidate.identity);
+  return {};
+}
+
+std::string SceneExport::retry_later(const SceneCandidate& candidate, KnownVolume& volume, const char* reason,
+                                     const char* always) {
+  if (++in_vain_[candidate.identity] < max_in_vain) {
+    // The next image is compared, because only then it may be exported.
+    volume.verified.schedule.ask_for_whole();
+    return reason;
+  }
+  in_vain_.erase(candidate.identity);
+  volume.exported = true;
+  return always;
 }
 
 std::optional<int> SceneExport::number() {
@@ -121,8 +184,8 @@ std::optional<int> SceneExport::number() {
 }
 
 void SceneExport::save(const SceneCandidate& candidate, KnownVolume& volume) {
-  const std::optional<int> number = this->number();
   volume.exported = true;
+  const std::optional<int> number = this->number();
   if (!number)
     return refuse(volume, candidate.texture,
                   fmt::format("{} volumes of this run have been exported already", max_exported_scenes));

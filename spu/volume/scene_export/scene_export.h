@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -59,7 +60,11 @@ class SceneExport {
  private:
   void refuse(KnownVolume& volume, GLuint texture, const std::string& reason);
   /// Why the scene cannot be saved now; empty if it can.
-  std::string obstacle(const SceneCandidate& candidate, KnownVolume& volume, MergedVolumes& merged) const;
+  std::string obstacle(const SceneCandidate& candidate, KnownVolume& volume, MergedVolumes& merged);
+  /// What could be read at the end of the frame is not what was drawn. Returns why the volume is not exported:
+  /// for `reason` if a later frame is tried, and for `always` if that was in vain too often.
+  std::string retry_later(const SceneCandidate& candidate, KnownVolume& volume, const char* reason,
+                          const char* always);
   /// Null if there are too many scenes.
   std::optional<int> number();
   void save(const SceneCandidate& candidate, KnownVolume& volume);
@@ -70,7 +75,8 @@ class SceneExport {
   KnownVolumes& volumes_;
   FrameAccount& account_;
   std::vector<SceneCandidate> kept_;
-  std::set<std::string> said_;  ///< reasons that were logged
+  std::map<std::uint64_t, int> in_vain_;  ///< frames in a row that had to be tried again, by identity
+  std::set<std::string> said_;            ///< reasons that were logged
 };
 
 }  // namespace understudy::spu

@@ -67,7 +67,9 @@ std::optional<Refusal> speed_refusal(KnownVolume& volume, std::uint64_t state) {
 }
 
 std::optional<Refusal> KnownVolumes::speed_refusal(GLuint texture, GLuint program) {
-  return spu::speed_refusal(of(texture), state_of(std::span(&texture, 1), program, group_));
+  KnownVolume& volume = of(texture);
+  volume.speed.share_among(volumes_.size());
+  return spu::speed_refusal(volume, state_of(std::span(&texture, 1), program, group_));
 }
 
 std::optional<Refusal> KnownVolumes::standing_refusal(GLuint texture) {

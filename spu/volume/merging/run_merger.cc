@@ -24,8 +24,6 @@ namespace {
 
 /// The whole must have been shown in this many frames before the nodes forget the bricks.
 constexpr std::uint64_t frames_before_bricks_go = 16;
-/// If not all bricks of an image that must be compared are drawn, they are shown one by one in so many frames.
-constexpr std::uint64_t frames_apart = 16;
 
 /// Binds a run's texture to the unit where it was bound when it was drawn; sampler objects stay.
 class BoundAgain {
@@ -166,9 +164,7 @@ bool RunMerger::speed_is_guarded() const {
 std::optional<double> RunMerger::show_held(MergedVolume& merged, std::vector<HeldRun>& held) {
   const bool all = held.size() == merged.textures.size();
   if (all && shows_as_one(merged, held)) return merged.volume.verified.schedule.native_ms();
-  if (all ? comparison_.begun() : comparison_.whole()) distrust(held);
-  // A viewer may leave out bricks beyond the window in every frame: for a while each is compared by itself.
-  if (!all && comparison_.whole()) merged.volume.refusals.pause(stages_.account.frames(), frames_apart);
+  if (all && comparison_.begun()) distrust(held);
   std::optional<double> native_ms = 0;
   std::exception_ptr trouble;
   for (HeldRun& each : held) {

@@ -10,7 +10,7 @@ namespace understudy::spu {
 double SpeedGuard::account_ms(Clock::time_point now) const {
   if (account_ms_ >= 0) return account_ms_;
   const double passed_ms = std::chrono::duration<double, std::milli>(now - paid_).count();
-  return std::min(0.0, account_ms_ + share_for_attempts * passed_ms);
+  return std::min(0.0, account_ms_ + share_ * passed_ms);
 }
 
 void SpeedGuard::pay(double ms, Clock::time_point now) {

@@ -8,7 +8,9 @@
 // look.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -21,6 +23,10 @@ class SpeedGuard {
   /// Called before a run of the volume is drawn. `state` identifies what the verdict may depend on: the program
   /// and the volume's contents. When it changes, a new first look begins, at most every state_pause.
   void about_to_draw(std::uint64_t state, Clock::time_point now);
+  /// That many volumes share the time for attempts: a volume in many textures may be hundreds.
+  void share_among(std::size_t volumes) {
+    share_ = share_for_attempts / double(std::max<std::size_t>(volumes, 1));
+  }
   /// Whether the application draws.
   bool pauses(Clock::time_point now) const;
 
@@ -50,6 +56,7 @@ class SpeedGuard {
   double account_ms(Clock::time_point now) const;
   void pay(double ms, Clock::time_point now);
 
+  double share_ = share_for_attempts;
   double account_ms_ = 0;  ///< at paid_
   Clock::time_point paid_{};
   std::uint64_t state_ = 0;

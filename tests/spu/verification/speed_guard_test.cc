@@ -122,5 +122,20 @@ TEST(SpeedGuard, MakesAnAttemptThatIsLikelyToSucceed) {
   EXPECT_EQ(viewer.refused(1s, 400), 1);
 }
 
+TEST(SpeedGuard, ManyVolumesShareTheTimeForAttempts) {
+  constexpr int volumes = 10;
+  SpeedGuard alone, one_of_many;
+  one_of_many.share_among(volumes);
+  const SpeedGuard::Clock::time_point start{std::chrono::hours(1)};
+  for (SpeedGuard* const guard : {&alone, &one_of_many})
+    for (int i = 0; i < SpeedGuard::first_attempts; ++i) guard->refused(1, start);
+  // 3 ms are 2 % of 150 ms.
+  const auto later = [&](int ms) { return start + std::chrono::milliseconds(ms); };
+  EXPECT_TRUE(alone.pauses(later(140)));
+  EXPECT_FALSE(alone.pauses(later(160)));
+  EXPECT_TRUE(one_of_many.pauses(later(140 * volumes)));
+  EXPECT_FALSE(one_of_many.pauses(later(160 * volumes)));
+}
+
 }  // namespace
 }  // namespace understudy::spu

@@ -43,7 +43,6 @@ struct Options {
   std::string remote;                  ///< Unix socket of the GL server that makes the calls; empty: none
   double verify_psnr = 0;              ///< dB; a compared image below this is refused
 
-  bool has_budget() const { return error > 0 || time_ms > 0; }
   /// Under a launcher, viewers can be controlled unless that was switched off.
   bool can_be_controlled() const { return control == "on" || (control == "auto" && !run_dir.empty()); }
 };

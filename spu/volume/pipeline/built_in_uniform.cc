@@ -21,6 +21,10 @@ class StateNumbers {
   void add(GLenum name) {
     take(4, [&](GLfloat* to) { gl_.GetFloatv(name, to); });
   }
+  void add_matrices() {
+    for (const GLenum name : {GL_MODELVIEW_MATRIX, GL_PROJECTION_MATRIX})
+      take(16, [&](GLfloat* to) { gl_.GetFloatv(name, to); });
+  }
   void add_material(GLenum face) {
     for (const GLenum name : {GL_AMBIENT, GL_DIFFUSE, GL_SPECULAR, GL_EMISSION, GL_SHININESS})
       take(4, [&](GLfloat* to) { gl_.GetMaterialfv(face, name, to); });
@@ -91,10 +95,11 @@ class StateNumbers {
 
 std::vector<double> built_in_uniform(const DispatchTable& gl, std::string_view name) {
   const auto is_any_of = [&](auto... beginnings) { return (name.starts_with(beginnings) || ...); };
-  if (is_any_of("gl_ModelView", "gl_Projection", "gl_Normal")) return {};
   StateNumbers state(gl);
-  if (is_any_of("gl_FrontMaterial", "gl_BackMaterial", "gl_FrontLight", "gl_BackLight", "gl_LightSource",
-                "gl_LightModel")) {
+  if (is_any_of("gl_ModelView", "gl_Projection", "gl_Normal")) {
+    state.add_matrices();
+  } else if (is_any_of("gl_FrontMaterial", "gl_BackMaterial", "gl_FrontLight", "gl_BackLight", "gl_LightSource",
+                       "gl_LightModel")) {
     state.add_material(GL_FRONT);
     state.add_material(GL_BACK);
     state.add_lights();

@@ -10,9 +10,8 @@
 
 namespace understudy::spu {
 
-/// Returns four whole numbers that depend on all state of the kind that the uniform `name` shows. Empty for the
-/// camera's matrices, whose changes are seen at the vertices; NaN, which equals nothing, for kinds that are not
-/// known here.
+/// Returns four whole numbers that depend on all state of the kind that the uniform `name` shows; NaN, which
+/// equals nothing, for kinds that are not known here.
 std::vector<double> built_in_uniform(const DispatchTable& gl, std::string_view name);
 
 }  // namespace understudy::spu

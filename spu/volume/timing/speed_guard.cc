@@ -25,6 +25,7 @@ void SpeedGuard::about_to_draw(std::uint64_t state, Clock::time_point now) {
   attempts_ = 0;
   shown_in_state_ = false;
   refused_ms_ = 0;
+  surcharge_ = 1;
 }
 
 bool SpeedGuard::pauses(Clock::time_point now) const {
@@ -53,7 +54,12 @@ void SpeedGuard::shown(double ours_ms, double native_ms, Clock::time_point now) 
   ever_shown_ = shown_in_state_ = true;
   account_ms_ = std::min(account_ms_, most_saved_frames * native_ms);
   slower_.clear();
+  if (ours_ms <= native_ms) surcharge_ = 1;
   if (account_ms_ >= 0) return;
+  if (attempts_ >= first_attempts && ours_ms > native_ms) {
+    surcharge_ = std::min(2 * surcharge_, largest_surcharge);
+    account_ms_ *= surcharge_;
+  }
   slower_ =
       fmt::format("substituting it took {:.3g} ms, the viewer's own drawing {:.3g} ms", ours_ms, native_ms);
 }

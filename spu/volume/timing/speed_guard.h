@@ -5,7 +5,9 @@
 // application's own drawing if its image was shown; an image that was faster is credited. While the account is
 // negative, the application draws, and a fiftieth of the elapsed time is credited. Attempts that gain nothing
 // therefore take at most 2 % of the time, however often and for whatever reason they fail, after a short first
-// look.
+// look. An image that was slower than the application's own drawing is likely to be slower again: each such
+// attempt in a row is charged twice as much as the one before, so that its share falls to an eighth of a
+// percent.
 #pragma once
 
 #include <algorithm>
@@ -51,6 +53,8 @@ class SpeedGuard {
   /// being slower now.
   static constexpr double most_saved_frames = 4;
   static constexpr auto state_pause = std::chrono::seconds(5);
+  /// An attempt after the first look that was slower is charged at most so many times.
+  static constexpr double largest_surcharge = 16;
 
  private:
   double account_ms(Clock::time_point now) const;
@@ -64,6 +68,7 @@ class SpeedGuard {
   int attempts_ = 0;
   bool shown_in_state_ = false;
   double refused_ms_ = 0;
+  double surcharge_ = 1;  ///< of the latest attempt that was slower
   bool ever_shown_ = false;
   bool allowed_ = false;
   std::string slower_;

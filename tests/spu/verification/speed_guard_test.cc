@@ -52,12 +52,22 @@ TEST(SpeedGuard, LeavesWhatIsSlowerAfterThreeImages) {
   EXPECT_NE(viewer.guard.slower().find("10 ms"), std::string::npos);
 }
 
-TEST(SpeedGuard, AttemptsThatGainNothingTakeAFiftiethOfTheTime) {
+TEST(SpeedGuard, AttemptsThatGainNothingBecomeRarer) {
   Viewer viewer;
-  const int first = viewer.shown(1s, 150, 100);
-  const int attempts = first + viewer.shown(100s, 150, 100);
-  EXPECT_LE(50.0 * attempts, 0.02 * 101'000 + 3 * 50.0);
-  EXPECT_GE(attempts, 30);
+  EXPECT_EQ(viewer.shown(1s, 150, 100), 3);
+  // 50 ms are 2 % of 2.5 s; they are charged 4, 8 and 16 times, and 16 times from then on.
+  EXPECT_LE(viewer.shown(100s, 150, 100), 6);
+  EXPECT_NEAR(viewer.shown(1000s, 150, 100), 25, 1);
+}
+
+TEST(SpeedGuard, AnAttemptThatGainsIsFollowedByOthers) {
+  Viewer viewer;
+  viewer.shown(100s, 150, 100);
+  viewer.attempts_in(40s, [&] { viewer.guard.shown(50, 100, viewer.now); });
+  EXPECT_EQ(viewer.shown(1s, 50, 100), 10);
+  // From then on, slower attempts are charged as the first ones were.
+  viewer.shown(1s, 150, 100);
+  EXPECT_GE(viewer.shown(20s, 150, 100), 2);
 }
 
 TEST(SpeedGuard, RefusalsTakeAFiftiethOfTheTime) {

@@ -86,12 +86,13 @@ void VolumeUnit::fill(Phase phase, DispatchTable& table) {
   if (phase == Phase::plain) {
     fill_enclosing_call_slots(table);
     fill_indexed_state_slots(table);
-    fill_program_binary_slots(table);
     fill_stack_detection_slots(table);
   }
   if (phase == Phase::watching) fill_watching_slots(table);
   if (phase == Phase::depth_deferred) fill_depth_deferred_slots(table);
   if (phase == Phase::deferring) fill_deferring_slots(table);
+  // In Phase::deferring, the call closes the run and goes on to the phase that begins then.
+  if (phase != Phase::compiling && phase != Phase::deferring) fill_program_binary_slots(table);
 }
 
 bool VolumeUnit::leaves_all(const Pipeline& pipeline) {

@@ -66,6 +66,15 @@ TEST_F(ProgramBinaries, OfAnotherRunAreRefusedAndSourcesCompiledInstead) {
   glsl_program(gl(), vertex, fragment);
 }
 
+TEST_F(ProgramBinaries, OfAnotherRunAreRefusedOnceThereIsAVolume) {
+  const std::vector<GLubyte> texels(8 * 8 * 8);
+  gl().BindTexture(GL_TEXTURE_3D, 1);
+  gl().TexImage3D(GL_TEXTURE_3D, 0, GL_R8, 8, 8, 8, 0, GL_RED, GL_UNSIGNED_BYTE, texels.data());
+  const Binary binary = binary_of(application_->driver(), program_);
+  EXPECT_FALSE(loads(gl(), gl().CreateProgram(), binary));
+  EXPECT_EQ(application_->error(), GLenum(GL_NO_ERROR));
+}
+
 TEST_F(ProgramBinaries, SayTheirLengthOnlyWhereTheDriverDoes) {
   GLsizei length = 77;
   GLenum format = 0;

@@ -26,8 +26,6 @@ struct NativeImage {
   std::vector<float> rgba;
 };
 
-/// What runs of one pipeline draw over transparent black (white for a minimum), one after the other; alpha is
-/// blended like the colour.
 /// Returns the part of `rect` that both the application and its nodes' image show: what of `viewport` lies left
 /// of the application's framebuffer or below it is neither drawn nor shown.
 inline volume::Rect comparable(const volume::Rect& rect, const volume::Rect& viewport) {
@@ -35,6 +33,8 @@ inline volume::Rect comparable(const volume::Rect& rect, const volume::Rect& vie
                       {0, 0, viewport.x + viewport.width, viewport.y + viewport.height});
 }
 
+/// What runs of one pipeline draw over transparent black (white for a minimum), one after the other; alpha is
+/// blended like the colour.
 class NativeDrawing {
  public:
   NativeDrawing(const GlContext& context, const Pipeline& pipeline, const volume::RenderRequest& request);

@@ -22,6 +22,14 @@ void load_field(GlApplication& app) {
                       GL_UNSIGNED_BYTE, blob.texels().data());
 }
 
+void load_integers(GlApplication& app) {
+  const Blob blob;
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    app.gl().TexParameteri(GL_TEXTURE_3D, filter, GL_NEAREST);
+  app.gl().TexImage3D(GL_TEXTURE_3D, 0, GL_R8UI, blob.x, blob.y, blob.z, 0, GL_RED_INTEGER, GL_UNSIGNED_BYTE,
+                      blob.texels().data());
+}
+
 void assembly(GlApplication& app, const std::string& text) {
   GLuint name = 0;
   app.gl().GenProgramsARB(1, &name);
@@ -139,6 +147,18 @@ std::vector<Drawing> drawings() {
                                      "uniform sampler3D field;\n"
                                      "void main() { gl_FragColor = vec4(fract(gl_FragCoord.xyz * 0.1),\n"
                                      "    0.1 * texture3D(field, gl_TexCoord[0].xyz).r); }\n"));
+       },
+       cube_in_front},
+      {"AVolumeOfIntegers", "the program samples a 3-D texture of integers",
+       [](GlApplication& app) {
+         load_integers(app);
+         app.gl().UseProgram(program(app,
+                                     "#version 130\n"
+                                     "uniform usampler3D field;\n"
+                                     "void main() {\n"
+                                     "  float s = float(texture(field, gl_TexCoord[0].xyz).r) / 255.0;\n"
+                                     "  gl_FragColor = vec4(s, s, 0.5, 0.2 * s);\n"
+                                     "}\n"));
        },
        cube_in_front},
       {"AFullScreenRayCasterWithoutGeometry", nullptr,

@@ -42,6 +42,8 @@ GLenum target_of_sampler(GLenum type) {
     case GL_SAMPLER_2D:
       return GL_TEXTURE_2D;
     case GL_SAMPLER_3D:
+    case GL_INT_SAMPLER_3D:
+    case GL_UNSIGNED_INT_SAMPLER_3D:
       return GL_TEXTURE_3D;
     case GL_SAMPLER_2D_RECT:
       return GL_TEXTURE_RECTANGLE;
@@ -82,6 +84,7 @@ std::optional<std::string> read_program_textures(const GlContext& context, const
   const std::shared_ptr<const ProgramRecord> record = group.programs().program(pipeline.program);
   if (record == nullptr) return std::nullopt;  // its link was not observed: no 3-D sampler is known
   int volumes = 0;
+  bool integers = false;
   for (const SamplerUniform& sampler : samplers.of(gl, pipeline.program, record->link)) {
     const GLenum target = target_of_sampler(sampler.type);
     GLint unit = 0;
@@ -94,11 +97,13 @@ std::optional<std::string> read_program_textures(const GlContext& context, const
     if (target == GL_TEXTURE_3D && sampled.texture != 0) {
       ++volumes;
       pipeline.volume = sampled;
+      integers |= sampler.type != GL_SAMPLER_3D;
     } else {
       pipeline.others.push_back(sampled);
     }
   }
   if (volumes > 1) return "the program samples more than one 3-D texture";
+  if (integers) return "the program samples a 3-D texture of integers";
   if (pipeline.volume.texture != 0 && has_subroutines(context, pipeline.program))
     return "the program chooses its subroutines, which measuring it would forget";
   if (volumes == 0 && stacks) take_slice(gl, pipeline);

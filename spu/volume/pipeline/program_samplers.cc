@@ -7,6 +7,20 @@
 namespace understudy::spu {
 namespace {
 
+bool may_be_of_a_volume_or_table(GLenum type) {
+  switch (type) {
+    case GL_SAMPLER_1D:
+    case GL_SAMPLER_2D:
+    case GL_SAMPLER_2D_RECT:
+    case GL_SAMPLER_3D:
+    case GL_INT_SAMPLER_3D:
+    case GL_UNSIGNED_INT_SAMPLER_3D:
+      return true;
+    default:
+      return false;
+  }
+}
+
 std::vector<SamplerUniform> read_samplers(const DispatchTable& gl, GLuint program) {
   std::vector<SamplerUniform> samplers;
   GLint linked = 0;
@@ -19,8 +33,7 @@ std::vector<SamplerUniform> read_samplers(const DispatchTable& gl, GLuint progra
     GLint size = 0;
     GLenum type = 0;
     gl.GetActiveUniform(program, GLuint(i), GLsizei(name.size()), nullptr, &size, &type, name.data());
-    if (type != GL_SAMPLER_1D && type != GL_SAMPLER_2D && type != GL_SAMPLER_3D && type != GL_SAMPLER_2D_RECT)
-      continue;
+    if (!may_be_of_a_volume_or_table(type)) continue;
     // Arrays are listed by their first element.
     std::string text = name.data();
     const bool array = text.ends_with("[0]");

@@ -26,6 +26,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Fewer textured quads in a row are not examined.
 constexpr std::size_t fewest_stack_slices = 8;
+/// Until so many images of a volume were shown, new kinds of state are those that every frame sets.
+constexpr std::uint64_t frames_of_first_state = 2;
 
 /// Returns the density of samples in texture space over rays of all directions; 1 for slices.
 double sample_density(const volume::RenderRequest& request) {
@@ -232,6 +234,10 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
   if (volume.colours.rounding.rounds()) round_samples(request);
   // A ray caster that was measured anew starts at frame 0: earlier comparisons do not apply to it.
   if (volume.frames == 0) volume.verified.schedule.ask_for_whole();
+  // The first frames set most kinds, in part after the volume was drawn.
+  const bool new_state = volume.verified.state_kinds != state_kinds.count();
+  if (new_state && volume.frames >= frames_of_first_state) volume.verified.schedule.ask_for_whole();
+  volume.verified.state_kinds = state_kinds.count();
   if (image.unproven) volume.verified.schedule.ask_for_several();
   volume.verified.schedule.begin(image.inputs, volume::footprint(request, request.region).pixels(),
                                  sample_density(request));

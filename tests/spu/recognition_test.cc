@@ -7,6 +7,7 @@
 
 #include "slice_scenes.h"
 #include "spu/options.h"
+#include "spu/report/counters.h"
 
 namespace understudy::spu::testing {
 namespace {
@@ -90,6 +91,25 @@ TEST(RecognitionOfChanges, ATextureUploadedAgainIsSeen) {
   const auto bare = app->read_pixels();
   EXPECT_LT(psnr(before, under), 30) << "the upload changes nothing: the test tests nothing";
   EXPECT_GE(psnr(under, bare), 40);
+  EXPECT_EQ(app->left(), 0U) << app->last_reason();
+}
+
+/// What the new state affects need not be known.
+TEST(RecognitionOfChanges, AKindOfStateThatIsNewAsksForAWholeComparison) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = client_arrays_table();
+  scene.set_up(*app);
+  const auto compared_after = [&] {
+    scene.draw(*app, 10);
+    return GlApplication::last_volume().verified_frames.load();
+  };
+  for (int frame = 0; frame < 4; ++frame) compared_after();
+  const std::uint64_t compared = compared_after();
+  app->gl().LineWidth(2);
+  EXPECT_EQ(compared_after(), compared + 1);
+  app->gl().LineWidth(3);
+  EXPECT_EQ(compared_after(), compared + 1);
   EXPECT_EQ(app->left(), 0U) << app->last_reason();
 }
 

@@ -16,6 +16,7 @@
 #include "spu/volume/observation/deferred_depth.h"
 #include "spu/volume/observation/run.h"
 #include "spu/volume/observation/stack_watch.h"
+#include "spu/volume/observation/state_kinds.h"
 #include "spu/volume/pipeline/program_samplers.h"
 #include "spu/volume/refusal/refusal.h"
 
@@ -54,6 +55,7 @@ class DrawObserver : public Unit {
   /// Between glBeginTransformFeedback and glEndTransformFeedback. From OpenGL 4.0 on a query is used instead,
   /// which takes paused feedback into account.
   bool transform_feedback = false;
+  StateKinds state_kinds;
   StackWatch stacks;
   /// Many 2-D textures of one size were defined: draws with them may be a stack of slices.
   void stack_defined();

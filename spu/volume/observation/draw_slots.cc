@@ -21,6 +21,7 @@
 #include "spu/volume/observation/enclosing_calls.h"
 #include "spu/volume/observation/indexed_state_calls.h"
 #include "spu/volume/observation/passing_calls.h"
+#include "spu/volume/observation/state_kinds.h"
 #include "spu/volume/observation/texture_changes.h"
 
 namespace understudy::spu {
@@ -495,6 +496,7 @@ void fill_draws(DispatchTable& table) {
 }  // namespace
 
 void fill_watching_slots(DispatchTable& table) {
+  fill_state_kind_slots(table);
   fill_draws(table);
   fill_texture_change_slots(table);
   fill_enclosing_call_slots(table);

@@ -27,7 +27,7 @@ namespace adversary {
   X(GenVertexArrays) X(GenerateMipmap) X(GetBufferSubData) X(GetError) X(GetIntegerv) X(GetProgramBinary) X(GetProgramInfoLog) X(ProgramBinary) \
   X(GetProgramiv) X(GetQueryObjectuiv) X(GetShaderInfoLog) X(GetShaderiv) X(GetString) X(GetSubroutineIndex) \
   X(GetTexImage) X(GetUniformBlockIndex) X(GetUniformLocation) X(Lightfv) X(LinkProgram) X(LoadMatrixf) X(MapBufferRange) X(Materialfv) X(MatrixMode) \
-  X(MemoryBarrier) X(NewList) X(PixelStorei) X(PixelTransferf) X(PointSize) X(PolygonMode) X(ProgramParameteri) X(ProgramStringARB) \
+  X(MemoryBarrier) X(NewList) X(PixelStorei) X(PixelTransferf) X(PointSize) X(PolygonMode) X(ProgramEnvParameter4fARB) X(ProgramLocalParameter4fARB) X(ProgramParameteri) X(ProgramStringARB) \
   X(ProgramUniform1f) X(ProgramUniform1i) X(ProgramUniformMatrix4fv) X(ReadBuffer) X(ReadPixels) \
   X(RenderbufferStorage) X(RenderbufferStorageMultisample) X(SamplerParameteri) X(Scissor) X(ShaderSource) \
   X(StencilFunc) X(StencilOp) X(TexBuffer) X(TexCoord2f) X(TexCoord3f) X(TexCoord3fv) X(TexEnvf) X(TexEnvfv) X(TexEnvi) X(TexGenfv) X(TexGeni) \

@@ -73,8 +73,6 @@ void cube_in_front(GlApplication& app) {
   draw_cube(app);
 }
 
-constexpr const char* more_than_the_sample = "the colour depends on more than the sample (position, lighting)";
-
 std::vector<Drawing> drawings() {
   return {
       {"LightingWithNormalsThatVary", "the colour varies over the slices (lighting with a varying normal)",
@@ -212,7 +210,8 @@ std::vector<Drawing> drawings() {
          look(app, View::perspective, 25);
          box_faces(app);
        }},
-      {"AssemblyThatReadsAnotherCoordinate", more_than_the_sample,
+      {"AssemblyThatReadsAnotherCoordinate",
+       "the fragment shader: colours depend on varying fragment.texcoord[1].xyzw",
        [](GlApplication& app) {
          load_field(app);
          assembly(app,
@@ -224,7 +223,7 @@ std::vector<Drawing> drawings() {
          app.gl().MultiTexCoord4f(GL_TEXTURE1, 0.5F, 0.6F, 0.7F, 0.1F);
        },
        cube_in_front},
-      {"AssemblyThatReadsThePosition", more_than_the_sample,
+      {"AssemblyThatReadsThePosition", "the fragment shader: colours depend on fragment.position.xyz",
        [](GlApplication& app) {
          load_field(app);
          assembly(app,
@@ -234,6 +233,43 @@ std::vector<Drawing> drawings() {
                   "MUL place, fragment.position, 0.01;\n"
                   "MUL result.color, field, place;\n"
                   "MUL result.color.a, field, 0.1;\n"
+                  "END\n");
+       },
+       cube_in_front},
+      {"AssemblyThatReadsTheCamera",
+       "the fragment program reads 'state.matrix.modelview.row[0]', whose changes are not followed",
+       [](GlApplication& app) {
+         load_field(app);
+         assembly(app,
+                  "!!ARBfp1.0\n"
+                  "TEMP field;\n"
+                  "TEX field, fragment.texcoord[0], texture[0], 3D;\n"
+                  "MUL result.color.rgb, field, state.matrix.modelview.row[0].x;\n"
+                  "MUL result.color.a, field, 0.1;\n"
+                  "END\n");
+       },
+       cube_in_front},
+      {"AssemblyThatReadsAnUnknownTable",
+       "colours come from 'texture[2]', a sampler1D, whose contents are not followed",
+       [](GlApplication& app) {
+         load_field(app);
+         assembly(app,
+                  "!!ARBfp1.0\n"
+                  "TEMP field;\n"
+                  "TEX field, fragment.texcoord[0], texture[0], 3D;\n"
+                  "TEX result.color, field, texture[2], 1D;\n"
+                  "END\n");
+       },
+       cube_in_front},
+      {"AssemblyWithAnUnknownOption",
+       "the fragment program in assembly language is not understood: OPTION "
+       "ARB_fragment_coord_pixel_center_integer",
+       [](GlApplication& app) {
+         load_field(app);
+         assembly(app,
+                  "!!ARBfp1.0\n"
+                  "OPTION ARB_fragment_coord_pixel_center_integer;\n"
+                  "TEX result.color, fragment.texcoord[0], texture[0], 3D;\n"
                   "END\n");
        },
        cube_in_front},

@@ -2,6 +2,7 @@
 #include "spu/volume/classification/classifier.h"
 
 #include <cmath>
+#include <span>
 
 #include "spu/report/counters.h"
 #include "spu/report/optimization.h"
@@ -88,6 +89,13 @@ struct Classifier::Key {
                         VerificationSchedule::Effect effect = VerificationSchedule::Effect::measured) {
     for (std::size_t i = first; i < values.size(); ++i) inputs.push_back({values[i], effect});
   }
+
+  void append_uniforms(std::span<const UniformValue> uniforms) {
+    for (const UniformValue& uniform : uniforms) {
+      const auto [rounded, remainder] = uniform.floats();
+      values.insert(values.end(), {rounded, remainder});
+    }
+  }
 };
 
 void Classifier::append_program(const Pipeline& pipeline, const RecognisedRun& run, Key& key) {
@@ -96,13 +104,21 @@ void Classifier::append_program(const Pipeline& pipeline, const RecognisedRun& r
   append_exactly(run.fragment.record->link, key.values);
   key.take_inputs_from(link, VerificationSchedule::Effect::unknown);
   const auto values = fragment_uniform_values(context_, pipeline.program, parts);
-  for (const UniformValue& value : values) {
-    const auto [rounded, remainder] = value.floats();
-    key.values.insert(key.values.end(), {rounded, remainder});
-  }
+  key.append_uniforms(values);
   const ProgramFindings& says = programs_.findings(pipeline, values, Subject::slices);
-  if (auto refusal = refusal_of_slices(parts, says, run.fragment, !run.slice_segments.empty()))
+  if (auto refusal = refusal_of_slices(says, run.fragment, !run.slice_segments.empty()))
     throw Refusal{std::move(*refusal)};
+  for (const auto& input : uniform_inputs(says, values)) key.inputs.push_back(input);
+}
+
+void Classifier::append_assembly(const Pipeline& pipeline, const RecognisedRun& run, Key& key) {
+  const std::size_t text = key.values.size();
+  append_digest(std::as_bytes(std::span(pipeline.assembly)), key.values);
+  key.take_inputs_from(text, VerificationSchedule::Effect::unknown);
+  const ProgramFindings& says = programs_.findings_of_assembly(pipeline);
+  if (auto refusal = refusal_of_assembly(pipeline, says, run.fragment)) throw Refusal{std::move(*refusal)};
+  const auto values = assembly_values(*context_.gl, says);
+  key.append_uniforms(values);
   for (const auto& input : uniform_inputs(says, values)) key.inputs.push_back(input);
 }
 
@@ -126,23 +142,22 @@ Classifier::Key Classifier::key_of(const Pipeline& pipeline, const RecognisedRun
   for (const GLint swizzle : texture.swizzle) key.values.push_back(float(swizzle));
   if (!context_.core) append_alpha_test(gl, key.values);
   key.take_inputs_from(0);
-  const std::size_t of_texture = key.values.size();
+  const bool program = run.fragment.record != nullptr || !pipeline.assembly.empty();
   if (run.fragment.record != nullptr) {
     append_program(pipeline, run, key);
+  } else if (program) {
+    append_assembly(pipeline, run, key);
   } else {
-    if (pipeline.assembly) {
-      key.values.push_back(std::nanf(""));  // its parameters may be any state of the context: probed every time
-    } else {
-      append_fixed_function_state(gl, key.values);
-      if (pipeline.fog) append_fog_state(gl, key.values);
-    }
+    const std::size_t of_texture = key.values.size();
+    append_fixed_function_state(gl, key.values);
+    if (pipeline.fog) append_fog_state(gl, key.values);
     key.take_inputs_from(of_texture);
   }
   const std::size_t without_tables = key.values.size();
   append_tables(pipeline, key);
   // In a program that is not refused, only samples address the tables.
-  key.take_inputs_from(without_tables, run.fragment.record != nullptr ? VerificationSchedule::Effect::predicted
-                                                                      : VerificationSchedule::Effect::measured);
+  key.take_inputs_from(without_tables, program ? VerificationSchedule::Effect::predicted
+                                               : VerificationSchedule::Effect::measured);
   return key;
 }
 

@@ -53,6 +53,7 @@ class Classifier {
   Key key_of(const Pipeline& pipeline, const RecognisedRun& run, const TextureDescription& texture,
              const std::array<float, 2>& range);
   void append_program(const Pipeline& pipeline, const RecognisedRun& run, Key& key);
+  void append_assembly(const Pipeline& pipeline, const RecognisedRun& run, Key& key);
   void append_tables(const Pipeline& pipeline, Key& key) const;
   std::string_view why_probed(const KnownColours& known, const std::vector<float>& key,
                               const InputRange& range) const;

@@ -115,22 +115,22 @@ std::optional<std::string> read_program_textures(const GlContext& context, const
   return std::nullopt;
 }
 
-/// Returns whether the bound fragment assembly program can name a 3-D texture: there is only one spelling of
-/// the target.
-bool may_sample_3d(const DispatchTable& gl) {
+/// Returns the text of the bound fragment assembly program.
+std::string assembly_text(const DispatchTable& gl) {
   GLint length = 0;
   gl.GetProgramivARB(GL_FRAGMENT_PROGRAM_ARB, GL_PROGRAM_LENGTH_ARB, &length);
-  if (length <= 0) return false;
+  if (length <= 0) return {};
   std::string text(std::size_t(length), ' ');
   gl.GetProgramStringARB(GL_FRAGMENT_PROGRAM_ARB, GL_PROGRAM_STRING_ARB, text.data());
-  return text.find("3D") != std::string::npos;
+  return text;
 }
 
-/// What an assembly program samples cannot be queried: it may be any texture that is bound.
+/// An assembly program may sample any texture that is bound.
 std::optional<std::string> read_assembly_textures(const GlContext& context, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
-  if (!may_sample_3d(gl)) return std::nullopt;
-  pipeline.assembly = true;
+  pipeline.assembly = assembly_text(gl);
+  // There is only one spelling of the target.
+  if (pipeline.assembly.find("3D") == std::string::npos) return std::nullopt;
   const GLint active = state_value(gl, GL_ACTIVE_TEXTURE);
   const GLint units = state_value(gl, GL_MAX_TEXTURE_IMAGE_UNITS);
   int volumes = 0;

@@ -31,7 +31,7 @@ struct SampledTexture {
 /// The pipeline of a run of slices.
 struct Pipeline {
   GLuint program = 0;          ///< 0: fixed function
-  bool assembly = false;       ///< fragments come from an ARB assembly program; `program` is 0
+  std::string assembly;        ///< text of the ARB assembly program of the fragments; then `program` is 0
   bool vertex_shader = false;  ///< false: fixed-function vertices, captured by feedback
   SampledTexture volume;
   bool stack = false;                  ///< `volume` may be the first of a stack of 2-D textures

@@ -462,7 +462,9 @@ std::size_t components_of_type(GLenum type) {
 bool is_named(const StageInput& input, const std::string& name) {
   return program::may_be_same_element(input.name, name) ||
          (name == "gl_Color" && input.name == "gl_FrontColor") ||
-         (name == "gl_SecondaryColor" && input.name == "gl_FrontSecondaryColor");
+         (name == "gl_SecondaryColor" && input.name == "gl_FrontSecondaryColor") ||
+         (name == "fragment.color.primary" && input.name == "gl_FrontColor") ||
+         (name == "fragment.texcoord[0]" && input.name == "gl_TexCoord[0]");
 }
 
 ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application) {
@@ -702,9 +704,10 @@ std::vector<UniformValue> fragment_uniform_values(const GlContext& context, GLui
   std::vector<UniformValue> values;
   for (const StageUniform& uniform : stages.uniforms) {
     const bool chooses = !is_sampler(uniform.type) && is_whole(shape_of(uniform.type).kind);
+    const bool built_in = uniform.name.starts_with("gl_");
     int component = 0;
     for (const double value : uniform_components(context, application, uniform))
-      values.push_back({uniform.name, component++, value, chooses});
+      values.push_back({uniform.name, built_in ? -1 : component++, value, chooses});
   }
   if (stages.uniform_blocks) append_block_contents(*context.gl, application, values);
   return values;

@@ -94,16 +94,16 @@ struct ProgramStages {
 /// One scalar of a uniform, or of the hash of a uniform block's contents.
 struct UniformValue {
   std::string_view name;  ///< of StageUniform; empty for a block
-  int component = 0;
-  double value = 0;      ///< exact: integers may have 32 bits
-  bool chooses = false;  ///< an integer or a boolean, which usually controls branches
+  int component = 0;      ///< -1: of the variable as a whole
+  double value = 0;       ///< exact: integers may have 32 bits
+  bool chooses = false;   ///< an integer or a boolean, which usually controls branches
 
   /// Returns the value rounded to float, and what rounding left out.
   std::array<float, 2> floats() const;
 };
 
 /// Returns whether a fragment shader refers to the input by `name`: gl_Color is what the vertex stage writes to
-/// gl_FrontColor.
+/// gl_FrontColor. A program in assembly language says fragment.color.primary.
 bool is_named(const StageInput& input, const std::string& name);
 
 /// Takes the program `application` apart; `record` has its sources.

@@ -23,6 +23,18 @@ constexpr std::string_view letters = "xyzw";
 /// Smaller numbers are operators of the front end.
 constexpr std::uint32_t first_operator = 1U << 21U;
 
+/// Returns the longest of the names that a binding has.
+std::string full_name(const std::string& name) {
+  if (name == "fragment.color") return "fragment.color.primary";
+  if (name == "fragment.texcoord" || name == "texture") return name + "[0]";
+  return name;
+}
+
+bool is_number(const std::string& text) {
+  const std::size_t sign = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
+  return text.size() > sign && (text[sign] == '.' || std::isdigit(static_cast<unsigned char>(text[sign])) != 0);
+}
+
 SourceKind kind_of_binding(const std::string& binding) {
   if (binding.starts_with("fragment.position")) return SourceKind::fragment_coordinate;
   if (binding.starts_with("fragment.facing")) return SourceKind::front_facing;
@@ -154,14 +166,14 @@ class AssemblyWalk {
     if (bracket != std::string::npos && array != arrays_.end()) {
       const bool known = std::isdigit(static_cast<unsigned char>(name[bracket + 1])) != 0;
       const std::size_t index = known ? std::stoul(name.substr(bracket + 1)) : array->second.size();
-      return index < array->second.size() ? array->second[index] : array->first + "[*]";
+      return index < array->second.size() ? full_name(array->second[index]) : array->first + "[*]";
     }
     for (int hops = 0; hops < 8; ++hops) {
       const auto bound = bindings_.find(name);
       if (bound == bindings_.end()) break;
       name = bound->second;
     }
-    return name;
+    return full_name(name);
   }
 
   Value read(const std::string& text) {
@@ -180,8 +192,7 @@ class AssemblyWalk {
   Value read_register(const std::string& name) {
     const auto written = registers_.find(name);
     if (written != registers_.end()) return written->second;
-    if (name.starts_with('{') || std::isdigit(static_cast<unsigned char>(name[0])) != 0 || name[0] == '.')
-      return constants(name);
+    if (name.starts_with('{') || is_number(name)) return constants(name);
     Value value;
     const bool bound = name.find('.') != std::string::npos || name.ends_with(']');
     const SourceKind kind = bound ? kind_of_binding(name) : SourceKind::undefined;

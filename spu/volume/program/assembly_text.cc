@@ -9,6 +9,9 @@
 namespace understudy::spu::program {
 namespace {
 
+/// "!!ARBfp1.0" or "!!ARBvp1.0"; instructions may follow in the same line.
+constexpr std::string_view header = "!!ARBfp1.0";
+
 bool is_blank(char letter) {
   return std::isspace(static_cast<unsigned char>(letter)) != 0;
 }
@@ -17,7 +20,7 @@ std::string without_comments(const std::string& text) {
   std::string kept;
   bool comment = false;
   for (const char letter : text) {
-    if (letter == '\n') comment = false;
+    if (letter == '\n' || letter == '\r') comment = false;
     if (letter == '#') comment = true;
     kept += comment ? ' ' : letter;
   }
@@ -64,14 +67,14 @@ char component_letter(char letter) {
 std::vector<Instruction> instructions_of(const std::string& text) {
   const std::string plain = without_comments(text);
   std::vector<Instruction> instructions;
-  std::size_t start = std::min(plain.find('\n'), plain.size());
-  int line = 2;
+  std::size_t start = std::min(header.size(), plain.size());
+  int line = 1;
   for (std::size_t i = start; i < plain.size(); ++i) {
     if (plain[i] != ';') continue;
     const std::string_view statement(plain.data() + start, i - start);
     const auto first = std::ranges::find_if_not(statement, is_blank);
     const int blank_lines = int(std::count(statement.begin(), first, '\n'));
-    if (first != statement.end()) instructions.push_back(instruction_of(statement, line + blank_lines - 1));
+    if (first != statement.end()) instructions.push_back(instruction_of(statement, line + blank_lines));
     line += int(std::ranges::count(statement, '\n'));
     start = i + 1;
   }
@@ -84,8 +87,9 @@ Operand operand_of(const std::string& text) {
   operand.negative = text.starts_with('-');
   operand.name = text.substr(sign);
   const std::size_t dot = operand.name.rfind('.');
-  if (dot == std::string::npos || operand.name.starts_with('{') || operand.name.size() - dot > 5)
-    return operand;
+  const std::size_t brace = operand.name.rfind('}');  // a dot before it is one of a number
+  const bool in_braces = brace != std::string::npos && dot < brace;
+  if (dot == std::string::npos || in_braces || operand.name.size() - dot > 5) return operand;
   for (const char letter : operand.name.substr(dot + 1)) operand.swizzle += component_letter(letter);
   if (operand.swizzle.find('\0') != std::string::npos || operand.swizzle.empty())
     operand.swizzle.clear();

@@ -37,8 +37,9 @@ void sort_out(const StageFacts& facts, const Influence& influence, SliceFinding&
     if (influence.target == Target::coordinate) finding.coordinate_others.push_back(influence);
   } else if (influence.target != Target::coordinate) {
     finding.others.push_back(influence);
-  } else if (source.kind != SourceKind::varying) {
-    finding.coordinate_others.push_back(influence);
+  } else {
+    (source.kind == SourceKind::varying ? finding.coordinate_varyings : finding.coordinate_others)
+        .push_back(influence);
   }
 }
 

@@ -20,6 +20,7 @@ struct SliceFinding {
   bool coordinate_is_varying = false;
   /// Sources other than varyings and uniforms that reach a coordinate of the volume.
   std::vector<Influence> coordinate_others;
+  std::vector<Influence> coordinate_varyings;  ///< varyings that reach a coordinate of the volume
   /// Sources other than the volume's texels and uniforms that reach colours, depth and discards.
   std::vector<Influence> others;
   std::vector<UniformUse> uniforms;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "spu/volume/pipeline/assembly_parameters.h"
 #include "spu/volume/program/element_names.h"
 
 namespace understudy::spu {
@@ -35,13 +36,16 @@ bool is_known_table(const program::SamplerType& type) {
           type.shape == TextureShape::rectangle);
 }
 
+Refusal not_followed(const program::Fetch& fetch) {
+  return fmt::format("colours come from '{}', a {}, whose contents are not followed", fetch.sampler,
+                     text(fetch.type));
+}
+
 std::optional<Refusal> refusal_of_tables(const StageFacts& facts, const std::vector<std::string>& tables,
                                          const SamplerRoles& roles) {
   for (const program::Fetch& fetch : facts.fetches) {
     if (!contains(tables, fetch.sampler) || contains(roles.idle, fetch.sampler)) continue;
-    if (!is_known_table(fetch.type))
-      return Refusal(fmt::format("colours come from '{}', a {}, whose contents are not followed", fetch.sampler,
-                                 text(fetch.type)));
+    if (!is_known_table(fetch.type)) return not_followed(fetch);
   }
   return {};
 }
@@ -52,18 +56,24 @@ std::optional<Refusal> refusal_of_side_effects(const StageFacts& facts) {
   return {};
 }
 
-const StageInput* input_of(const ProgramStages& stages, const std::string& name) {
+const StageInput* input_of(const FragmentInputs& fragment, const std::string& name) {
   const auto found =
-      std::ranges::find_if(stages.inputs, [&](const StageInput& input) { return is_named(input, name); });
-  return found == stages.inputs.end() ? nullptr : &*found;
+      std::ranges::find_if(fragment.inputs, [&](const StageInput& input) { return is_named(input, name); });
+  return found == fragment.inputs.end() ? nullptr : &*found;
+}
+
+/// Returns whether the values of the varying, which reaches the volume's coordinate, are captured. Those of
+/// shaders are; of what assembly programs read, feedback reports the coordinate alone for every vertex.
+bool is_observed(const FragmentInputs& fragment, const Source& varying) {
+  const StageInput* const input = input_of(fragment, varying.name);
+  return fragment.record != nullptr || (input != nullptr && input->name == fragment.coordinate);
 }
 
 /// Returns whether the influence is the same for all fragments of the run, or measured as fog.
-bool is_measured(const ProgramStages& stages, const FragmentInputs& fragment, const Influence& influence,
-                 const Source& source) {
-  const StageInput* const input = input_of(stages, source.name);
+bool is_measured(const FragmentInputs& fragment, const Influence& influence, const Source& source) {
+  const StageInput* const input = input_of(fragment, source.name);
   if (input == nullptr || input->name == fragment.coordinate) return false;
-  const auto index = std::size_t(input - stages.inputs.data());
+  const auto index = std::size_t(input - fragment.inputs.data());
   if (index >= fragment.range.low.size()) return false;
   const auto component = std::size_t(source.component);
   if (fragment.range.low[index][component] == fragment.range.high[index][component]) return true;
@@ -93,6 +103,32 @@ std::vector<std::size_t> fetches_of_samples(const program::RayFinding& finding, 
   std::ranges::copy_if(finding.samples, std::back_inserter(fetches),
                        [&](std::size_t index) { return !contains(roles.idle, facts.fetches[index].sampler); });
   return fetches;
+}
+
+std::string sampler_of_unit(int unit) {
+  return fmt::format("texture[{}]", unit);
+}
+
+/// Returns the role of the only 3-D texture. No sampler is idle: the texture without a name may have texels.
+SamplerRoles assembly_roles(const StageFacts& facts, const Pipeline& pipeline) {
+  SamplerRoles roles;
+  const std::string volume = sampler_of_unit(pipeline.volume.unit);
+  if (std::ranges::any_of(facts.fetches, [&](const program::Fetch& fetch) {
+        return fetch.sampler == volume && fetch.type.shape == program::TextureShape::space;
+      }))
+    roles.volume.push_back(volume);
+  return roles;
+}
+
+/// Returns whether the pipeline lists the texture that the fetch reads.
+bool is_listed(const Pipeline& pipeline, const program::Fetch& fetch) {
+  using program::TextureShape;
+  const GLenum target = fetch.type.shape == TextureShape::line    ? GL_TEXTURE_1D
+                        : fetch.type.shape == TextureShape::plane ? GL_TEXTURE_2D
+                                                                  : GL_TEXTURE_RECTANGLE;
+  return std::ranges::any_of(pipeline.others, [&](const SampledTexture& other) {
+    return other.target == target && fetch.sampler == sampler_of_unit(other.unit);
+  });
 }
 
 Refusal of_fragment_shader(const std::string& text) {
@@ -157,8 +193,53 @@ const ProgramFindings* ProgramText::findings(std::span<const std::string> fragme
   return &*findings_;
 }
 
-std::optional<Refusal> refusal_of_slices(const ProgramStages& stages, const ProgramFindings& findings,
-                                         const FragmentInputs& fragment, bool slice_segments) {
+const ProgramFindings* AssemblyText::findings(const Pipeline& pipeline) {
+  if (text_ != pipeline.assembly) {
+    text_ = pipeline.assembly;
+    findings_.reset();
+    program::StageFinding read = program::analyse_assembly(text_);
+    if (const auto* failure = std::get_if<program::Failure>(&read))
+      trouble_ = "the fragment program in assembly language is not understood: " + failure->what;
+    else
+      findings_.emplace(ProgramFindings{std::get<StageFacts>(std::move(read)), {}});
+  }
+  if (!findings_) return nullptr;
+  SamplerRoles roles = assembly_roles(findings_->facts, pipeline);
+  if (!findings_->slices || !(roles == findings_->roles)) {
+    findings_->roles = std::move(roles);
+    findings_->slices = slice_finding(findings_->facts, ends_of_ways(findings_->roles));
+  }
+  return &*findings_;
+}
+
+std::optional<Refusal> refusal_of_assembly(const Pipeline& pipeline, const ProgramFindings& findings,
+                                           const FragmentInputs& fragment) {
+  for (const program::Fetch& fetch : findings.facts.fetches) {
+    if (contains(findings.slices->tables, fetch.sampler) && !is_listed(pipeline, fetch))
+      return not_followed(fetch);
+  }
+  return refusal_of_slices(findings, fragment, false);
+}
+
+std::vector<UniformValue> assembly_values(const DispatchTable& gl, const ProgramFindings& findings) {
+  std::vector<UniformValue> values;
+  std::vector<double> parameter;
+  for (const program::UniformUse& use : findings.slices->uniforms) {
+    const Source& source = findings.facts.sources[use.source];
+    const bool state = is_assembly_state(source.name);
+    if (state && !values.empty() && values.back().name == source.name) continue;
+    parameter = assembly_parameter(gl, source.name);
+    if (parameter.empty())
+      throw Refusal{
+          fmt::format("the fragment program reads '{}', whose changes are not followed", source.name)};
+    if (!state) parameter = {parameter[std::size_t(source.component)]};
+    for (const double value : parameter) values.push_back({source.name, state ? -1 : source.component, value});
+  }
+  return values;
+}
+
+std::optional<Refusal> refusal_of_slices(const ProgramFindings& findings, const FragmentInputs& fragment,
+                                         bool slice_segments) {
   const StageFacts& facts = findings.facts;
   const SamplerRoles& roles = findings.roles;
   if (auto refusal = refusal_of_side_effects(facts)) return refusal;
@@ -174,9 +255,12 @@ std::optional<Refusal> refusal_of_slices(const ProgramStages& stages, const Prog
   std::vector<Influence> unexplained = finding.coordinate_others;
   for (const Influence& influence : finding.others) {
     const Source& source = facts.sources[influence.source];
-    if (source.kind == SourceKind::varying && is_measured(stages, fragment, influence, source)) continue;
+    if (source.kind == SourceKind::varying && is_measured(fragment, influence, source)) continue;
     unexplained.push_back(influence);
   }
+  std::ranges::copy_if(
+      finding.coordinate_varyings, std::back_inserter(unexplained),
+      [&](const Influence& influence) { return !is_observed(fragment, facts.sources[influence.source]); });
   if (unexplained.empty()) return {};
   return of_fragment_shader(texts(facts, unexplained).front());
 }
@@ -225,7 +309,7 @@ VerificationSchedule::Inputs uniform_inputs(const ProgramFindings& findings,
              const Source& source = findings.facts.sources[use.source];
              if (!use.discard && !use.branch && !use.coordinate) return false;
              if (value.name.empty()) return source.kind == SourceKind::uniform_block;
-             return source.component == value.component &&
+             return (value.component < 0 || source.component == value.component) &&
                     program::may_be_same_element(source.name, value.name);
            });
   };

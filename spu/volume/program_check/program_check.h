@@ -60,14 +60,36 @@ class ProgramText {
   int readings_ = 0;
 };
 
+/// The findings about the fragment program in assembly language that was analysed last.
+class AssemblyText {
+ public:
+  /// Returns the findings about the pipeline's program, as slices. Null, with the reason in trouble(), if it
+  /// cannot be analysed.
+  const ProgramFindings* findings(const Pipeline& pipeline);
+  const std::string& trouble() const { return trouble_; }
+
+ private:
+  std::string text_;
+  std::optional<ProgramFindings> findings_;
+  std::string trouble_;
+};
+
+/// Returns the current values of the parameters that the assembly program's colours depend on, in the order of
+/// the findings. Throws Refusal, with the name, if one cannot be read.
+std::vector<UniformValue> assembly_values(const DispatchTable& gl, const ProgramFindings& findings);
+
 SamplerRoles sampler_roles(const DispatchTable& gl, const Pipeline& pipeline,
                            const std::vector<SamplerUniform>& samplers);
 
 /// Returns why slices may not be substituted, with the variable's name; null: they may. Besides one texel,
 /// colours may depend only on what probing measures: one scalar that fades them (fog), or a second texel that
 /// `slice_segments` explain. `fragment.coordinate` names the input that addresses the volume.
-std::optional<Refusal> refusal_of_slices(const ProgramStages& stages, const ProgramFindings& findings,
-                                         const FragmentInputs& fragment, bool slice_segments);
+std::optional<Refusal> refusal_of_slices(const ProgramFindings& findings, const FragmentInputs& fragment,
+                                         bool slice_segments);
+
+/// The same for slices whose fragments come from the pipeline's assembly program.
+std::optional<Refusal> refusal_of_assembly(const Pipeline& pipeline, const ProgramFindings& findings,
+                                           const FragmentInputs& fragment);
 
 /// Returns why a ray caster may not be substituted; null: it may. Refuses what no measurement would show:
 /// colours from the pixel's position or from time (RayFinding::data), several texels in one sample unless they

@@ -38,4 +38,10 @@ const ProgramFindings& ProgramReader::findings(const Pipeline& pipeline, std::sp
   return *found;
 }
 
+const ProgramFindings& ProgramReader::findings_of_assembly(const Pipeline& pipeline) {
+  const ProgramFindings* const found = assembly_.findings(pipeline);
+  if (found == nullptr) throw Refusal{assembly_.trouble()};
+  return *found;
+}
+
 }  // namespace understudy::spu

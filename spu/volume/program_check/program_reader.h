@@ -33,6 +33,10 @@ class ProgramReader {
   const ProgramFindings& findings(const Pipeline& pipeline, std::span<const UniformValue> values,
                                   Subject subject);
 
+  /// Returns what the text of the pipeline's assembly program implies for slices. Throws Refusal if it cannot
+  /// be analysed.
+  const ProgramFindings& findings_of_assembly(const Pipeline& pipeline);
+
   /// Forgets the programs, which are gone with their context.
   void forget() { stages_.clear(); }
 
@@ -46,6 +50,7 @@ class ProgramReader {
   ProgramSamplers& samplers_;
   ByProgram<ProgramStages> stages_;
   ByProgram<ProgramText> texts_;
+  AssemblyText assembly_;
 };
 
 }  // namespace understudy::spu

@@ -98,20 +98,6 @@ bool may_be_box(const Run& run, const ProgramStages& stages) {
   return run.draws <= faces && stages.observer != 0;
 }
 
-/// Second value of inputs that feedback does not report: a colour that depends on them is not the sample's
-/// alone.
-constexpr std::array<float, 4> untold_value{0.75F, 0.75F, 0.75F, 1};
-
-/// Inputs that an assembly program may read besides coordinate and primary colour, and that feedback does not
-/// report.
-void append_untold_inputs(std::vector<StageInput>& inputs) {
-  constexpr int coordinate_sets = 8;
-  for (int set = 1; set < coordinate_sets; ++set)
-    inputs.push_back({fmt::format("gl_TexCoord[{}]", set), GL_FLOAT_VEC4, 4, false});
-  inputs.push_back({"gl_FrontSecondaryColor", GL_FLOAT_VEC4, 4, false});
-  inputs.push_back({"gl_FogFragCoord", GL_FLOAT, 1, false});
-}
-
 /// Whether face culling removes any of the triangles, which transform feedback captures all the same.
 bool culls_any(const DispatchTable& gl, const ObservedPolygons& triangles) {
   if (!gl.IsEnabled(GL_CULL_FACE)) return false;
@@ -141,7 +127,7 @@ Refusal not_affine(const char* reason, const CameraFit& fit) {
   return {reason, fmt::format("residual {:.2g} of a fit, {:.0e} is allowed", fit.residual, max_fit_residual)};
 }
 
-/// Takes the inputs that an assembly program may read, or the fixed-function pipeline does, from feedback.
+/// Takes the inputs of fragments from feedback, which reports no others.
 void take_inputs_of_feedback(const Pipeline& pipeline, RecognisedRun& seen) {
   FragmentInputs& fragment = seen.fragment;
   fragment.coordinate = "gl_TexCoord[0]";
@@ -152,14 +138,11 @@ void take_inputs_of_feedback(const Pipeline& pipeline, RecognisedRun& seen) {
       fragment.first.push_back(*seen.polygons.constant_colour);
     } else if (pipeline.fog && input.name == "gl_FogFragCoord") {
       fragment.first.push_back({seen.fog_numbers.front(), 0, 0, 0});
-    } else if (pipeline.assembly) {
-      fragment.first.push_back({0.25F, 0.25F, 0.25F, 1});
     } else {
       throw Refusal{"the fragment shader reads " + input.name + ", which feedback does not tell"};
     }
   }
   fragment.last = fragment.first;
-  if (pipeline.assembly) std::fill(fragment.last.begin() + 2, fragment.last.end(), untold_value);
   fragment.range = {fragment.first, fragment.first};
   if (!pipeline.fog) return;
   const auto [low, high] = std::minmax_element(seen.fog_numbers.begin(), seen.fog_numbers.end());
@@ -208,7 +191,6 @@ RecognisedRun Recogniser::observe(const Run& run, const std::string& known_coord
   } else {
     seen.fragment.inputs = {{"gl_TexCoord[0]", GL_FLOAT_VEC4, 4, false},
                             {"gl_FrontColor", GL_FLOAT_VEC4, 4, false}};
-    if (pipeline.assembly) append_untold_inputs(seen.fragment.inputs);
   }
   observe_fixed_function(run, seen);
   return seen;

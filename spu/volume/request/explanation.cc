@@ -92,8 +92,8 @@ std::string explanation(const Pipeline& pipeline, const TextureDescription& text
                                        ? "colours in the texels"
                                    : request.slice_segment ? "pre-integration table probed from the program"
                                    : pipeline.program != 0 ? "table probed from the program"
-                                   : pipeline.assembly     ? "table probed from the assembly program"
-                                                           : "table probed from fixed function";
+                                   : !pipeline.assembly.empty() ? "table probed from the assembly program"
+                                                                : "table probed from fixed function";
   return fmt::format(
       "{}x{}x{} {} texels ({}), {}, {} filter, {}, {} camera, fit to {:.1e}, {} of {} colours, {} clip planes, "
       "{}{}{}",

@@ -100,6 +100,33 @@ TEST(AssemblyPrograms, BiasedShadowLookupsKeepTheirReference) {
   EXPECT_EQ(facts.fetches[0].modifiers.size(), 2U);
 }
 
+TEST(AssemblyPrograms, BeginInTheLineOfTheHeader) {
+  const StageFinding finding = analyse_assembly(
+      "!!ARBfp1.0 TEMP v; TEX v, fragment.texcoord, texture, 3D; KIL fragment.color.x;\n"
+      "# a comment that ends here\rMUL result.color, v, fragment.fogcoord.x;\nEND\n");
+  ASSERT_TRUE(std::holds_alternative<StageFacts>(finding)) << std::get<Failure>(finding).what;
+  const StageFacts& facts = std::get<StageFacts>(finding);
+  ASSERT_EQ(facts.fetches.size(), 1U);
+  EXPECT_EQ(facts.fetches[0].sampler, "texture[0]");
+  const std::vector<std::string> volumes{"texture[0]"};
+  const SliceFinding slices = slice_finding(facts, volumes);
+  EXPECT_THAT(slices.reasons,
+              ElementsAre("varying fragment.color.primary.x decides which fragments are discarded",
+                          "colours depend on varying fragment.fogcoord.x"));
+  EXPECT_THAT(texts(facts, slices.coordinate_varyings),
+              ElementsAre("the volume's coordinate depends on varying fragment.texcoord[0].xyz"));
+}
+
+TEST(AssemblyPrograms, ConstantsHaveSignsAndComponents) {
+  const StageFacts facts = assembly(
+      "PARAM k[2] = { -0.5, { 1, 2, 3, 4 } }; TEMP a, b;\n"
+      "ADD a, fragment.texcoord[0], {0, 0, 0.1, 0}; ADD b, fragment.texcoord[0], {0, 0, 0.1, 0}.z;\n"
+      "TEX a, a, texture[0], 3D; TEX b, b, texture[0], 3D; MUL a, a, k[0]; ADD result.color, a, b;\n");
+  ASSERT_EQ(facts.fetches.size(), 2U);
+  EXPECT_NE(facts.fetches[0].place, facts.fetches[1].place);
+  EXPECT_THAT(reaches(facts, "result.color", 0), ElementsAre("texel of 'texture[0]'.x"));
+}
+
 TEST(AssemblyPrograms, OfVerticesAreRead) {
   const StageFinding finding = analyse_assembly(
       "!!ARBvp1.0\nPARAM m[4] = { state.matrix.mvp }; ADDRESS A0;\nDP4 result.position.x, m[0], "

@@ -45,6 +45,7 @@ GlContext describe_context(const DispatchTable& gl) {
   if (context.version >= 300) context.extensions = extensions_of(gl);
   context.pipeline_statistics =
       context.version >= 460 || has_extension(context, "GL_ARB_pipeline_statistics_query");
+  context.srgb_decode = has_extension(context, "GL_EXT_texture_sRGB_decode");
   if (!context.core) {
     gl.GetIntegerv(GL_MAX_TEXTURE_UNITS, &context.fixed_function_units);
     context.fragment_assembly = has_extension(context, "GL_ARB_fragment_program");

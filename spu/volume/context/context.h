@@ -18,6 +18,7 @@ struct GlContext {
   bool fragment_assembly = false;     ///< GL_ARB_fragment_program
   bool vertex_assembly = false;       ///< GL_ARB_vertex_program
   bool fog_distance = false;          ///< GL_NV_fog_distance
+  bool srgb_decode = false;           ///< GL_EXT_texture_sRGB_decode
   std::vector<std::string>
       extensions{};              ///< of the driver, such as GL_ARB_gpu_shader5; empty before OpenGL 3.0
   int fixed_function_units = 0;  ///< texture units of the fixed-function pipeline; 0 in core profiles

@@ -71,6 +71,25 @@ std::string name_of_format(GLint format) {
   }
 }
 
+/// Whether colours, but not alpha, are stored as sRGB. Compressed formats are not listed.
+bool is_srgb(GLint format) {
+  switch (format) {
+    case GL_SRGB:
+    case GL_SRGB8:
+    case GL_SRGB_ALPHA:
+    case GL_SRGB8_ALPHA8:
+    case GL_SLUMINANCE:
+    case GL_SLUMINANCE8:
+    case GL_SLUMINANCE_ALPHA:
+    case GL_SLUMINANCE8_ALPHA8:
+    case GL_SR8_EXT:
+    case GL_SRG8_EXT:
+      return true;
+    default:
+      return false;
+  }
+}
+
 struct Component {
   BaseFormat base;
   GLenum size;
@@ -290,7 +309,8 @@ std::optional<std::string> describe_texture(const GlContext& context, GLenum tar
   GLint base_level = 0;
   gl.GetTexParameteriv(target, GL_TEXTURE_BASE_LEVEL, &base_level);
   if (base_level != 0) return "the texture's base level is not 0";
-  description.format_name = name_of_format(level_parameter(gl, target, GL_TEXTURE_INTERNAL_FORMAT));
+  const GLint format = level_parameter(gl, target, GL_TEXTURE_INTERNAL_FORMAT);
+  description.format_name = name_of_format(format);
   if (auto reason = describe_components(context, target, description)) return reason;
 
   GLint sampler = 0;
@@ -302,6 +322,9 @@ std::optional<std::string> describe_texture(const GlContext& context, GLenum tar
     gl.ActiveTexture(GLenum(active));
     gl.GetTexParameteriv(target, GL_TEXTURE_SWIZZLE_RGBA, description.swizzle.data());
   }
+  // What is read back is not decoded.
+  if (is_srgb(format) && decodes_srgb(context, target, sampler))
+    return "the texture's colours are decoded from sRGB";
   const auto magnify = GLenum(texture_parameter(gl, target, sampler, GL_TEXTURE_MAG_FILTER));
   if (minifying_filter(context, target, sampler) != magnify)
     return "the texture is mip-mapped or filtered differently when minified";

@@ -23,6 +23,11 @@ GLint texture_parameter(const DispatchTable& gl, GLenum target, GLint sampler, G
   return value;
 }
 
+bool decodes_srgb(const GlContext& context, GLenum target, GLint sampler) {
+  return !context.srgb_decode ||
+         texture_parameter(*context.gl, target, sampler, GL_TEXTURE_SRGB_DECODE_EXT) != GL_SKIP_DECODE_EXT;
+}
+
 void append_lookup(const GlContext& context, GLenum target, int unit, std::vector<float>& values) {
   const DispatchTable& gl = *context.gl;
   if (target != GL_TEXTURE_1D && target != GL_TEXTURE_2D && target != GL_TEXTURE_RECTANGLE) return;
@@ -44,6 +49,7 @@ void append_lookup(const GlContext& context, GLenum target, int unit, std::vecto
     gl.GetTexParameteriv(target, GL_TEXTURE_SWIZZLE_RGBA, swizzle.data());
     values.insert(values.end(), swizzle.begin(), swizzle.end());
   }
+  values.push_back(decodes_srgb(context, target, sampler) ? 1.0F : 0.0F);
   gl.ActiveTexture(GLenum(active));
 }
 

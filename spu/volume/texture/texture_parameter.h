@@ -17,8 +17,11 @@ GLint bound_sampler(const GlContext& context);
 /// unit.
 GLint texture_parameter(const DispatchTable& gl, GLenum target, GLint sampler, GLenum name);
 
-/// Appends how `unit` looks up its texture of 1 or 2 dimensions between texels and beyond its ends, and which
-/// components it returns.
+/// Returns whether a texture of an sRGB format is decoded when it is sampled.
+bool decodes_srgb(const GlContext& context, GLenum target, GLint sampler);
+
+/// Appends how `unit` looks up its texture of 1 or 2 dimensions between texels and beyond its ends, which
+/// components it returns, and whether it decodes them.
 void append_lookup(const GlContext& context, GLenum target, int unit, std::vector<float>& values);
 
 }  // namespace understudy::spu

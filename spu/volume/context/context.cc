@@ -45,6 +45,9 @@ GlContext describe_context(const DispatchTable& gl) {
   if (context.version >= 300) context.extensions = extensions_of(gl);
   context.pipeline_statistics =
       context.version >= 460 || has_extension(context, "GL_ARB_pipeline_statistics_query");
+  context.anisotropic_filter = context.version >= 460 ||
+                               has_extension(context, "GL_EXT_texture_filter_anisotropic") ||
+                               has_extension(context, "GL_ARB_texture_filter_anisotropic");
   context.srgb_decode = has_extension(context, "GL_EXT_texture_sRGB_decode");
   if (!context.core) {
     gl.GetIntegerv(GL_MAX_TEXTURE_UNITS, &context.fixed_function_units);

@@ -18,6 +18,7 @@ struct GlContext {
   bool fragment_assembly = false;     ///< GL_ARB_fragment_program
   bool vertex_assembly = false;       ///< GL_ARB_vertex_program
   bool fog_distance = false;          ///< GL_NV_fog_distance
+  bool anisotropic_filter = false;    ///< GL_TEXTURE_MAX_ANISOTROPY
   bool srgb_decode = false;           ///< GL_EXT_texture_sRGB_decode
   std::vector<std::string>
       extensions{};              ///< of the driver, such as GL_ARB_gpu_shader5; empty before OpenGL 3.0

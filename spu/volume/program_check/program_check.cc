@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <iterator>
 
+#include "spu/volume/context/context.h"
 #include "spu/volume/pipeline/assembly_parameters.h"
 #include "spu/volume/program/element_names.h"
+#include "spu/volume/texture/texture_parameter.h"
 
 namespace understudy::spu {
 namespace {
@@ -41,11 +43,39 @@ Refusal not_followed(const program::Fetch& fetch) {
                      text(fetch.type));
 }
 
+/// Whether a texel decides where the fetch looks up, and so how far neighbouring pixels look up from each
+/// other, which decides about the level of detail.
+bool has_level_by_texels(const StageFacts& facts, const program::Fetch& fetch) {
+  if (fetch.function != program::FetchFunction::filtered) return false;
+  const auto is_texel = [&](const program::Dependence& dependence) {
+    return facts.sources[dependence.source].kind == SourceKind::texel;
+  };
+  const auto is_of_draw = [&](const program::Dependence& dependence) {
+    const SourceKind kind = facts.sources[dependence.source].kind;
+    return kind == SourceKind::uniform || kind == SourceKind::uniform_block;
+  };
+  if ((fetch.level || fetch.gradient) && std::ranges::all_of(fetch.modifiers, is_of_draw)) return false;
+  return std::ranges::any_of(fetch.coordinate, [&](const program::Dependences& component) {
+    return std::ranges::any_of(component, is_texel);
+  });
+}
+
+bool may_be_among(const std::vector<std::string>& samplers, const std::string& name) {
+  return std::ranges::any_of(samplers, [&](const std::string& sampler) {
+    return name.empty() || program::may_be_same_element(sampler, name);
+  });
+}
+
 std::optional<Refusal> refusal_of_tables(const StageFacts& facts, const std::vector<std::string>& tables,
                                          const SamplerRoles& roles) {
   for (const program::Fetch& fetch : facts.fetches) {
     if (!contains(tables, fetch.sampler) || contains(roles.idle, fetch.sampler)) continue;
     if (!is_known_table(fetch.type)) return not_followed(fetch);
+    if (may_be_among(roles.mipmapped, fetch.sampler) && has_level_by_texels(facts, fetch))
+      return Refusal(fmt::format("colours come from '{}', which is mip-mapped, anisotropic, or filtered "
+                                 "differently when minified",
+                                 fetch.sampler),
+                     {}, "choose the same filter for both, without mipmaps, or limit the table to one level");
   }
   return {};
 }
@@ -109,26 +139,34 @@ std::string sampler_of_unit(int unit) {
   return fmt::format("texture[{}]", unit);
 }
 
-/// Returns the role of the only 3-D texture. No sampler is idle: the texture without a name may have texels.
-SamplerRoles assembly_roles(const StageFacts& facts, const Pipeline& pipeline) {
+bool reads(const program::Fetch& fetch, const SampledTexture& texture) {
+  using program::TextureShape;
+  const GLenum target = fetch.type.shape == TextureShape::line    ? GL_TEXTURE_1D
+                        : fetch.type.shape == TextureShape::plane ? GL_TEXTURE_2D
+                                                                  : GL_TEXTURE_RECTANGLE;
+  return texture.target == target && fetch.sampler == sampler_of_unit(texture.unit);
+}
+
+/// Returns whether the pipeline lists the texture that the fetch reads.
+bool is_listed(const Pipeline& pipeline, const program::Fetch& fetch) {
+  return std::ranges::any_of(pipeline.others, [&](const SampledTexture& other) { return reads(fetch, other); });
+}
+
+/// Returns the role of the only 3-D texture and of tables. No sampler is idle: the texture without a name may
+/// have texels.
+SamplerRoles assembly_roles(const GlContext& context, const StageFacts& facts, const Pipeline& pipeline) {
   SamplerRoles roles;
   const std::string volume = sampler_of_unit(pipeline.volume.unit);
   if (std::ranges::any_of(facts.fetches, [&](const program::Fetch& fetch) {
         return fetch.sampler == volume && fetch.type.shape == program::TextureShape::space;
       }))
     roles.volume.push_back(volume);
+  for (const SampledTexture& other : pipeline.others) {
+    if (std::ranges::any_of(facts.fetches, [&](const program::Fetch& fetch) { return reads(fetch, other); }) &&
+        depends_on_level_of_detail(context, other.target, other.unit))
+      roles.mipmapped.push_back(sampler_of_unit(other.unit));
+  }
   return roles;
-}
-
-/// Returns whether the pipeline lists the texture that the fetch reads.
-bool is_listed(const Pipeline& pipeline, const program::Fetch& fetch) {
-  using program::TextureShape;
-  const GLenum target = fetch.type.shape == TextureShape::line    ? GL_TEXTURE_1D
-                        : fetch.type.shape == TextureShape::plane ? GL_TEXTURE_2D
-                                                                  : GL_TEXTURE_RECTANGLE;
-  return std::ranges::any_of(pipeline.others, [&](const SampledTexture& other) {
-    return other.target == target && fetch.sampler == sampler_of_unit(other.unit);
-  });
 }
 
 Refusal of_fragment_shader(const std::string& text) {
@@ -137,8 +175,9 @@ Refusal of_fragment_shader(const std::string& text) {
 
 }  // namespace
 
-SamplerRoles sampler_roles(const DispatchTable& gl, const Pipeline& pipeline,
+SamplerRoles sampler_roles(const GlContext& context, const Pipeline& pipeline,
                            const std::vector<SamplerUniform>& samplers) {
+  const DispatchTable& gl = *context.gl;
   SamplerRoles roles;
   for (const SamplerUniform& sampler : samplers) {
     if (sampler.location == pipeline.volume.sampler_location) {
@@ -149,7 +188,10 @@ SamplerRoles sampler_roles(const DispatchTable& gl, const Pipeline& pipeline,
       return sampled.sampler_location == sampler.location;
     });
     if (other != pipeline.others.end()) {
-      if (other->texture == 0) roles.idle.push_back(sampler.name);
+      if (other->texture == 0)
+        roles.idle.push_back(sampler.name);
+      else if (depends_on_level_of_detail(context, other->target, other->unit))
+        roles.mipmapped.push_back(sampler.name);
       continue;
     }
     GLint unit = 0;
@@ -193,7 +235,7 @@ const ProgramFindings* ProgramText::findings(std::span<const std::string> fragme
   return &*findings_;
 }
 
-const ProgramFindings* AssemblyText::findings(const Pipeline& pipeline) {
+const ProgramFindings* AssemblyText::findings(const GlContext& context, const Pipeline& pipeline) {
   if (text_ != pipeline.assembly) {
     text_ = pipeline.assembly;
     findings_.reset();
@@ -204,7 +246,7 @@ const ProgramFindings* AssemblyText::findings(const Pipeline& pipeline) {
       findings_.emplace(ProgramFindings{std::get<StageFacts>(std::move(read)), {}});
   }
   if (!findings_) return nullptr;
-  SamplerRoles roles = assembly_roles(findings_->facts, pipeline);
+  SamplerRoles roles = assembly_roles(context, findings_->facts, pipeline);
   if (!findings_->slices || !(roles == findings_->roles)) {
     findings_->roles = std::move(roles);
     findings_->slices = slice_finding(findings_->facts, ends_of_ways(findings_->roles));

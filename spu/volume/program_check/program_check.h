@@ -21,8 +21,9 @@ namespace understudy::spu {
 
 /// The names of the program's samplers, by role.
 struct SamplerRoles {
-  std::vector<std::string> volume;  ///< set to the volume's texture
-  std::vector<std::string> idle;    ///< set to a unit without a texture: they return one value everywhere
+  std::vector<std::string> volume;     ///< set to the volume's texture
+  std::vector<std::string> idle;       ///< set to a unit without a texture: they return one value everywhere
+  std::vector<std::string> mipmapped;  ///< set to a table whose colours depend on the level of detail
   bool operator==(const SamplerRoles&) const = default;
 };
 
@@ -65,7 +66,7 @@ class AssemblyText {
  public:
   /// Returns the findings about the pipeline's program, as slices. Null, with the reason in trouble(), if it
   /// cannot be analysed.
-  const ProgramFindings* findings(const Pipeline& pipeline);
+  const ProgramFindings* findings(const GlContext& context, const Pipeline& pipeline);
   const std::string& trouble() const { return trouble_; }
 
  private:
@@ -78,7 +79,7 @@ class AssemblyText {
 /// the findings. Throws Refusal, with the name, if one cannot be read.
 std::vector<UniformValue> assembly_values(const DispatchTable& gl, const ProgramFindings& findings);
 
-SamplerRoles sampler_roles(const DispatchTable& gl, const Pipeline& pipeline,
+SamplerRoles sampler_roles(const GlContext& context, const Pipeline& pipeline,
                            const std::vector<SamplerUniform>& samplers);
 
 /// Returns why slices may not be substituted, with the variable's name; null: they may. Besides one texel,

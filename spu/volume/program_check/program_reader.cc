@@ -31,7 +31,7 @@ const ProgramFindings& ProgramReader::findings(const Pipeline& pipeline, std::sp
     link = record->link;
   }
   const DispatchTable& gl = *context_.gl;
-  const SamplerRoles roles = sampler_roles(gl, pipeline, samplers_.of(gl, program, record->link));
+  const SamplerRoles roles = sampler_roles(context_, pipeline, samplers_.of(gl, program, record->link));
   const ProgramFindings* const found =
       text.findings(record->fragment_sources, context_.extensions, roles, values, subject);
   if (found == nullptr) throw Refusal{text.trouble()};
@@ -39,7 +39,7 @@ const ProgramFindings& ProgramReader::findings(const Pipeline& pipeline, std::sp
 }
 
 const ProgramFindings& ProgramReader::findings_of_assembly(const Pipeline& pipeline) {
-  const ProgramFindings* const found = assembly_.findings(pipeline);
+  const ProgramFindings* const found = assembly_.findings(context_, pipeline);
   if (found == nullptr) throw Refusal{assembly_.trouble()};
   return *found;
 }

@@ -20,8 +20,13 @@ GLint texture_parameter(const DispatchTable& gl, GLenum target, GLint sampler, G
 /// Returns whether a texture of an sRGB format is decoded when it is sampled.
 bool decodes_srgb(const GlContext& context, GLenum target, GLint sampler);
 
-/// Appends how `unit` looks up its texture of 1 or 2 dimensions between texels and beyond its ends, which
-/// components it returns, and whether it decodes them.
+/// Returns whether the colour at one coordinate depends on how fast the coordinate changes from pixel to pixel:
+/// by mipmap levels, by another filter when minified, or by an anisotropic filter. Of the texture of 1 or 2
+/// dimensions that `unit` looks up in `target`.
+bool depends_on_level_of_detail(const GlContext& context, GLenum target, int unit);
+
+/// Appends how `unit` looks up its texture of 1 or 2 dimensions between texels and beyond its ends, from
+/// which levels, which components it returns, and whether it decodes them.
 void append_lookup(const GlContext& context, GLenum target, int unit, std::vector<float>& values);
 
 }  // namespace understudy::spu

@@ -46,6 +46,16 @@ struct VolumeUnit::Recognised {
   const CameraFit& camera;
 };
 
+/// Exists while the unit makes calls of its own: neither their errors nor their state remain.
+struct VolumeUnit::OwnCalls {
+  explicit OwnCalls(VolumeUnit& unit) : errors(*unit.context().gl, unit.kept_errors) {
+    if (unit.chain().group().has_indexed_state()) state.emplace(unit.context());
+  }
+
+  OwnErrors errors;
+  std::optional<IndexedState> state;
+};
+
 VolumeUnit::VolumeUnit(Chain& chain, std::shared_ptr<RenderSession> session)
     : DrawObserver(chain),
       session_(std::move(session)),
@@ -95,6 +105,7 @@ void VolumeUnit::fill(Phase phase, DispatchTable& table) {
   if (phase == Phase::deferring) fill_deferring_slots(table);
   // In Phase::deferring, the call closes the run and goes on to the phase that begins then.
   if (phase != Phase::compiling && phase != Phase::deferring) fill_program_binary_slots(table);
+  fill_error_slot(table);  // errors may be kept in any phase, as volumes may have been deleted since
 }
 
 bool VolumeUnit::leaves_all(const Pipeline& pipeline) {
@@ -119,8 +130,7 @@ bool VolumeUnit::substitutes(std::unique_ptr<Run>& run) {
   const GLuint texture = run->volume_texture();
   const std::optional<View> view = note_view(*run);
   const bool shown = [&] {
-    std::optional<IndexedState> kept;
-    if (chain().group().has_indexed_state()) kept.emplace(context());
+    const OwnCalls own(*this);
     return shows(run);
   }();
   if (view && !shown) session_->windows().shown(*view, false);
@@ -303,8 +313,7 @@ Phase VolumeUnit::resting_phase() const {
 
 void VolumeUnit::settle_held() {
   if (!stages_ || stages_->merger.empty()) return;
-  std::optional<IndexedState> kept;
-  if (chain().group().has_indexed_state()) kept.emplace(context());
+  const OwnCalls own(*this);
   stages_->merger.settle();
 }
 
@@ -324,8 +333,7 @@ void VolumeUnit::export_scenes() {
   // Calls would be recorded in the list.
   if (!stages_ || stages_->scenes.empty() || chain().phase() == Phase::compiling) return;
   const Clock::time_point start = Clock::now();
-  std::optional<IndexedState> kept;
-  if (chain().group().has_indexed_state()) kept.emplace(context());
+  const OwnCalls own(*this);
   stages_->scenes.write(stages_->merged);
   frame_started_ += Clock::now() - start;  // not a part of the frame's time
 }

@@ -52,6 +52,7 @@ class VolumeUnit final : public DrawObserver {
 
  private:
   struct Recognised;
+  struct OwnCalls;
 
   std::optional<Refusal> standing_refusal(GLuint texture, GLuint program) override;
   bool leaves_all(const Pipeline& pipeline) override;

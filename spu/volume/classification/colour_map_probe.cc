@@ -217,6 +217,7 @@ ProbeFinding probe_map(ProbeBench& bench, const GlContext& context, const Pipeli
   }
   MapProbe probe(bench, context, texture, fragment);
   const ProbedImage mapped = probe.mapped(fragment.first);
+  if (!bench.drew_any()) return no_fragment_drawn;
   FoggedMap found{.matrix = matrix_of(mapped, texture.opaque), .range = fragment.range};
   InputValues last = fragment.last;
   const std::vector<InputNumber> telling = telling_numbers(probe, mapped, fragment);

@@ -2,11 +2,20 @@
 #include "spu/volume/classification/probe_bench.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "spu/volume/context/context.h"
+#include "spu/volume/context/kept_errors.h"
 
 namespace understudy::spu {
+namespace {
+
+/// What pixels hold before a draw; no fragment has this colour.
+constexpr float never_drawn = std::numeric_limits<float>::lowest();
+
+}  // namespace
 
 ProbeBench::ProbeBench(const GlContext& context, const Pipeline& pipeline)
     : gl_(*context.gl),
@@ -57,17 +66,27 @@ void ProbeBench::show(GLenum internal_format, GLenum format, const std::array<in
 
 ProbedImage ProbeBench::draw(const InputValues& values, bool with_alpha_test, const volume::Rgba& background,
                              const InputValues& across, const InputValues& up) {
-  gl_.ClearBufferfv(GL_COLOR, 0, background.data());
+  constexpr std::array clear{never_drawn, never_drawn, never_drawn, never_drawn};
+  gl_.ClearBufferfv(GL_COLOR, 0, clear.data());
   if (with_alpha_test && alpha_test_) gl_.Enable(GL_ALPHA_TEST);
   gl_.UseProgram(program_);
   const InputValues level(values.size());
   give("understudy_value", values);
   give("understudy_across", across.empty() ? level : across);
   give("understudy_up", up.empty() ? level : up);
+  take_error(gl_);  // of preparations: whether they failed shows in what is drawn
   gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+  const GLenum error = take_error(gl_);
+  if (error_ == GL_NO_ERROR) error_ = error;
   if (alpha_test_) gl_.Disable(GL_ALPHA_TEST);
   ProbedImage image(probe_pixels);
   gl_.ReadPixels(0, 0, probe_edge, probe_edge, GL_RGBA, GL_FLOAT, image.data());
+  drew_any_ = false;
+  for (volume::Rgba& pixel : image) {
+    const bool drawn = pixel[3] != never_drawn;
+    drew_any_ |= drawn;
+    if (!drawn) pixel = background;
+  }
   return image;
 }
 

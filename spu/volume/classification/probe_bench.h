@@ -22,6 +22,8 @@ constexpr float same_colour = 2e-4F;
 /// The same under fog, which is interpolated between values of its scalar.
 constexpr float same_fogged_colour = 4e-3F;
 
+/// Why nothing is known after a first draw that left no pixel: the draw failed, or nothing is visible.
+constexpr const char* no_fragment_drawn = "the fragment stage draws nothing, whatever the sample";
 constexpr const char* more_than_the_sample = "the colour depends on more than the sample (position, lighting)";
 
 /// Row by row, one fragment per pixel.
@@ -64,6 +66,11 @@ class ProbeBench {
   ProbedImage draw_along(const FragmentInputs& fragment, const InputNumber& number, float low, float high,
                          bool with_alpha_test);
 
+  /// Whether the last draw left any fragment.
+  bool drew_any() const { return drew_any_; }
+  /// The first error that the driver raised for a draw; GL_NO_ERROR: none. What was drawn is not known then.
+  GLenum error() const { return error_; }
+
   bool alpha_test_enabled() const { return alpha_test_; }
 
  private:
@@ -78,6 +85,8 @@ class ProbeBench {
   GLuint framebuffer_ = 0;
   GLuint vertex_array_ = 0;
   GLuint program_ = 0;
+  bool drew_any_ = false;
+  GLenum error_ = GL_NO_ERROR;
 };
 
 /// Returns the values of all inputs but the coordinate, in the order in which the probe program numbers them.

@@ -223,6 +223,7 @@ ProbeFinding probe_table(ProbeBench& bench, const GlContext& context, const Pipe
                          const std::array<float, 2>& range) {
   TableProbe probe(bench, context, texture, fragment, range);
   ProbedImage table = probe.table(fragment.first);
+  if (!bench.drew_any()) return no_fragment_drawn;
   if (!finite(table)) return "the fragment stage gives colours that are not finite";
 
   // A discarded fragment is transparent to every operator but the minimum, for which zero is a value.

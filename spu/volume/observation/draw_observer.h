@@ -13,6 +13,7 @@
 
 #include "spu/chain.h"
 #include "spu/volume/context/context.h"
+#include "spu/volume/context/kept_errors.h"
 #include "spu/volume/observation/deferred_depth.h"
 #include "spu/volume/observation/run.h"
 #include "spu/volume/observation/stack_watch.h"
@@ -59,6 +60,8 @@ class DrawObserver : public Unit {
   StackWatch stacks;
   /// Many 2-D textures of one size were defined: draws with them may be a stack of slices.
   void stack_defined();
+
+  KeptErrors kept_errors;
 
   DeferredDepth deferred_depth;
   /// Depth that runs of these volumes would have written is being read: it is no longer watched.

@@ -69,6 +69,13 @@ bool joins_run(DrawObserver& observer) {
   return observer.run_open() || observer.opens_run();
 }
 
+GLenum APIENTRY get_error() {
+  DrawObserver& observer = DrawObserver::current();
+  observer.close_run();
+  const GLenum kept = observer.kept_errors.take();
+  return kept != GL_NO_ERROR ? kept : observer.next().GetError();
+}
+
 void APIENTRY begin(GLenum mode) {
   DrawObserver& observer = DrawObserver::current();
   if (!joins_run(observer)) {
@@ -516,6 +523,10 @@ void fill_deferring_slots(DispatchTable& table) {
   table.Disable = switch_capability<&DispatchTable::Disable>;
   fill_draws(table);
   fill_array_calls(table);
+}
+
+void fill_error_slot(DispatchTable& table) {
+  table.GetError = get_error;
 }
 
 }  // namespace understudy::spu

@@ -36,7 +36,10 @@ ProbeFinding probe_classification(const GlContext& context, const Pipeline& pipe
   std::string trouble;
   bench.own(probe_program(context, fragment.record.get(), fragment.inputs, fragment.coordinate, trouble));
   if (bench.program() == 0) return trouble;
-  if (fragment.record != nullptr) copy_uniforms(context, fragment.application, bench.program());
+  if (fragment.record != nullptr) {
+    const std::string missing = copy_uniforms(context, fragment.application, bench.program());
+    if (!missing.empty()) return not_copied(missing);
+  }
   ProbeFinding finding = probe_colours(bench, context, pipeline, texture, fragment, range);
   if (bench.error() != GL_NO_ERROR)
     return Refusal{"the driver rejects what the fragment stage is probed with",

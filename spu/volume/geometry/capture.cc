@@ -85,7 +85,8 @@ InputRange range_of(const Capture& capture, const ProgramStages& stages) {
 std::vector<float> captured_data(const GlContext& context, const Run& run, const ProgramStages& stages,
                                  std::size_t stride) {
   TransformFeedback feedback(context, stages.observer);
-  copy_uniforms(context, run.pipeline().program, stages.observer);
+  const std::string missing = copy_uniforms(context, run.pipeline().program, stages.observer);
+  if (!missing.empty()) throw Refusal{not_copied(missing)};
   context.gl->UseProgram(stages.observer);
   return feedback.triangles(run, stride);
 }

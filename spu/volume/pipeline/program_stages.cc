@@ -27,7 +27,7 @@ namespace {
 
 struct UniformShape {
   int components = 0;
-  enum class Kind { real, integer, natural, matrix } kind = Kind::real;
+  enum class Kind { real, integer, natural, precise, matrix, precise_matrix } kind = Kind::real;
 };
 
 struct TypedShape {
@@ -35,13 +35,19 @@ struct TypedShape {
   UniformShape shape;
 };
 using Kind = UniformShape::Kind;
-constexpr std::array<TypedShape, 26> uniform_shapes{{
+constexpr auto uniform_shapes = std::to_array<TypedShape>({
     {GL_FLOAT, {1, Kind::real}},
     {GL_FLOAT_VEC2, {2, Kind::real}},
     {GL_FLOAT_VEC3, {3, Kind::real}},
     {GL_FLOAT_VEC4, {4, Kind::real}},
     {GL_FLOAT_MAT2, {4, Kind::matrix}},
+    {GL_FLOAT_MAT2x3, {6, Kind::matrix}},
+    {GL_FLOAT_MAT3x2, {6, Kind::matrix}},
+    {GL_FLOAT_MAT2x4, {8, Kind::matrix}},
+    {GL_FLOAT_MAT4x2, {8, Kind::matrix}},
     {GL_FLOAT_MAT3, {9, Kind::matrix}},
+    {GL_FLOAT_MAT3x4, {12, Kind::matrix}},
+    {GL_FLOAT_MAT4x3, {12, Kind::matrix}},
     {GL_FLOAT_MAT4, {16, Kind::matrix}},
     {GL_UNSIGNED_INT, {1, Kind::natural}},
     {GL_UNSIGNED_INT_VEC2, {2, Kind::natural}},
@@ -55,24 +61,73 @@ constexpr std::array<TypedShape, 26> uniform_shapes{{
     {GL_BOOL_VEC4, {4, Kind::integer}},
     {GL_INT, {1, Kind::integer}},
     {GL_BOOL, {1, Kind::integer}},
-    {GL_SAMPLER_1D, {1, Kind::integer}},
-    {GL_SAMPLER_2D, {1, Kind::integer}},
-    {GL_SAMPLER_3D, {1, Kind::integer}},
-    {GL_SAMPLER_CUBE, {1, Kind::integer}},
-    {GL_SAMPLER_2D_RECT, {1, Kind::integer}},
-    {GL_SAMPLER_1D_SHADOW, {1, Kind::integer}},
-    {GL_SAMPLER_2D_SHADOW, {1, Kind::integer}},
-}};
+    {GL_DOUBLE, {1, Kind::precise}},
+    {GL_DOUBLE_VEC2, {2, Kind::precise}},
+    {GL_DOUBLE_VEC3, {3, Kind::precise}},
+    {GL_DOUBLE_VEC4, {4, Kind::precise}},
+    {GL_DOUBLE_MAT2, {4, Kind::precise_matrix}},
+    {GL_DOUBLE_MAT2x3, {6, Kind::precise_matrix}},
+    {GL_DOUBLE_MAT3x2, {6, Kind::precise_matrix}},
+    {GL_DOUBLE_MAT2x4, {8, Kind::precise_matrix}},
+    {GL_DOUBLE_MAT4x2, {8, Kind::precise_matrix}},
+    {GL_DOUBLE_MAT3, {9, Kind::precise_matrix}},
+    {GL_DOUBLE_MAT3x4, {12, Kind::precise_matrix}},
+    {GL_DOUBLE_MAT4x3, {12, Kind::precise_matrix}},
+    {GL_DOUBLE_MAT4, {16, Kind::precise_matrix}},
+});
 
-/// How a uniform type is read and written; `components` is 0 for types that no volume shader has used so far.
-UniformShape shape_of(GLenum type) {
-  const auto found = std::ranges::find(uniform_shapes, type, &TypedShape::type);
-  return found == uniform_shapes.end() ? UniformShape{} : found->shape;
-}
+constexpr auto sampler_types = std::to_array<GLenum>({
+    GL_SAMPLER_1D,
+    GL_SAMPLER_2D,
+    GL_SAMPLER_3D,
+    GL_SAMPLER_CUBE,
+    GL_SAMPLER_1D_SHADOW,
+    GL_SAMPLER_2D_SHADOW,
+    GL_SAMPLER_2D_RECT,
+    GL_SAMPLER_2D_RECT_SHADOW,
+    GL_SAMPLER_1D_ARRAY,
+    GL_SAMPLER_2D_ARRAY,
+    GL_SAMPLER_BUFFER,
+    GL_SAMPLER_1D_ARRAY_SHADOW,
+    GL_SAMPLER_2D_ARRAY_SHADOW,
+    GL_SAMPLER_CUBE_SHADOW,
+    GL_SAMPLER_CUBE_MAP_ARRAY,
+    GL_SAMPLER_CUBE_MAP_ARRAY_SHADOW,
+    GL_SAMPLER_2D_MULTISAMPLE,
+    GL_SAMPLER_2D_MULTISAMPLE_ARRAY,
+    GL_INT_SAMPLER_1D,
+    GL_INT_SAMPLER_2D,
+    GL_INT_SAMPLER_3D,
+    GL_INT_SAMPLER_CUBE,
+    GL_INT_SAMPLER_2D_RECT,
+    GL_INT_SAMPLER_1D_ARRAY,
+    GL_INT_SAMPLER_2D_ARRAY,
+    GL_INT_SAMPLER_BUFFER,
+    GL_INT_SAMPLER_CUBE_MAP_ARRAY,
+    GL_INT_SAMPLER_2D_MULTISAMPLE,
+    GL_INT_SAMPLER_2D_MULTISAMPLE_ARRAY,
+    GL_UNSIGNED_INT_SAMPLER_1D,
+    GL_UNSIGNED_INT_SAMPLER_2D,
+    GL_UNSIGNED_INT_SAMPLER_3D,
+    GL_UNSIGNED_INT_SAMPLER_CUBE,
+    GL_UNSIGNED_INT_SAMPLER_2D_RECT,
+    GL_UNSIGNED_INT_SAMPLER_1D_ARRAY,
+    GL_UNSIGNED_INT_SAMPLER_2D_ARRAY,
+    GL_UNSIGNED_INT_SAMPLER_BUFFER,
+    GL_UNSIGNED_INT_SAMPLER_CUBE_MAP_ARRAY,
+    GL_UNSIGNED_INT_SAMPLER_2D_MULTISAMPLE,
+    GL_UNSIGNED_INT_SAMPLER_2D_MULTISAMPLE_ARRAY,
+});
 
 bool is_sampler(GLenum type) {
-  return type == GL_SAMPLER_1D || type == GL_SAMPLER_2D || type == GL_SAMPLER_3D || type == GL_SAMPLER_CUBE ||
-         type == GL_SAMPLER_2D_RECT || type == GL_SAMPLER_1D_SHADOW || type == GL_SAMPLER_2D_SHADOW;
+  return std::ranges::find(sampler_types, type) != sampler_types.end();
+}
+
+/// How a uniform type is read; `components` is 0 for types that are not known.
+UniformShape shape_of(GLenum type) {
+  if (is_sampler(type)) return {1, Kind::integer};
+  const auto found = std::ranges::find(uniform_shapes, type, &TypedShape::type);
+  return found == uniform_shapes.end() ? UniformShape{} : found->shape;
 }
 
 template <class Visit>
@@ -94,41 +149,60 @@ void for_each_uniform(const DispatchTable& gl, GLuint program, Visit visit) {
   }
 }
 
-void copy_uniform(const DispatchTable& gl, GLuint from, GLint source, GLuint to, GLint target, GLenum type) {
+using MatrixSetter = decltype(DispatchTable::UniformMatrix2fv) DispatchTable::*;
+
+/// Returns null for types that are no matrices of floats.
+MatrixSetter matrix_setter(GLenum type) {
+  using T = DispatchTable;
+  static constexpr auto setters = std::to_array<std::pair<GLenum, MatrixSetter>>({
+      {GL_FLOAT_MAT2, &T::UniformMatrix2fv},
+      {GL_FLOAT_MAT2x3, &T::UniformMatrix2x3fv},
+      {GL_FLOAT_MAT2x4, &T::UniformMatrix2x4fv},
+      {GL_FLOAT_MAT3, &T::UniformMatrix3fv},
+      {GL_FLOAT_MAT3x2, &T::UniformMatrix3x2fv},
+      {GL_FLOAT_MAT3x4, &T::UniformMatrix3x4fv},
+      {GL_FLOAT_MAT4, &T::UniformMatrix4fv},
+      {GL_FLOAT_MAT4x2, &T::UniformMatrix4x2fv},
+      {GL_FLOAT_MAT4x3, &T::UniformMatrix4x3fv},
+  });
+  const auto found = std::ranges::find(setters, type, &std::pair<GLenum, MatrixSetter>::first);
+  return found == setters.end() ? nullptr : found->second;
+}
+
+/// Copies the uniform of `to`, which is in use. Returns false for types that are not copied.
+bool copy_uniform(const DispatchTable& gl, GLuint from, GLint source, GLint target, GLenum type) {
+  using T = DispatchTable;
   const UniformShape shape = shape_of(type);
-  std::array<GLfloat, 16> real{};
-  std::array<GLint, 4> integer{};
-  std::array<GLuint, 4> natural{};
-  gl.UseProgram(to);
+  if (shape.components == 0) return false;
+  const auto copy = [&]<class Number>(Number, auto get, const auto& setters) {
+    std::array<Number, 4> value{};
+    (gl.*get)(from, source, value.data());
+    (gl.*setters[std::size_t(shape.components - 1)])(target, 1, value.data());
+    return true;
+  };
   switch (shape.kind) {
     case Kind::real:
-      gl.GetUniformfv(from, source, real.data());
-      if (shape.components == 1) gl.Uniform1fv(target, 1, real.data());
-      if (shape.components == 2) gl.Uniform2fv(target, 1, real.data());
-      if (shape.components == 3) gl.Uniform3fv(target, 1, real.data());
-      if (shape.components == 4) gl.Uniform4fv(target, 1, real.data());
-      break;
-    case Kind::matrix:
-      gl.GetUniformfv(from, source, real.data());
-      if (shape.components == 4) gl.UniformMatrix2fv(target, 1, GL_FALSE, real.data());
-      if (shape.components == 9) gl.UniformMatrix3fv(target, 1, GL_FALSE, real.data());
-      if (shape.components == 16) gl.UniformMatrix4fv(target, 1, GL_FALSE, real.data());
-      break;
+      return copy(GLfloat(), &T::GetUniformfv,
+                  std::array{&T::Uniform1fv, &T::Uniform2fv, &T::Uniform3fv, &T::Uniform4fv});
     case Kind::integer:
-      gl.GetUniformiv(from, source, integer.data());
-      if (shape.components == 1) gl.Uniform1iv(target, 1, integer.data());
-      if (shape.components == 2) gl.Uniform2iv(target, 1, integer.data());
-      if (shape.components == 3) gl.Uniform3iv(target, 1, integer.data());
-      if (shape.components == 4) gl.Uniform4iv(target, 1, integer.data());
-      break;
+      return copy(GLint(), &T::GetUniformiv,
+                  std::array{&T::Uniform1iv, &T::Uniform2iv, &T::Uniform3iv, &T::Uniform4iv});
     case Kind::natural:
-      gl.GetUniformuiv(from, source, natural.data());
-      if (shape.components == 1) gl.Uniform1uiv(target, 1, natural.data());
-      if (shape.components == 2) gl.Uniform2uiv(target, 1, natural.data());
-      if (shape.components == 3) gl.Uniform3uiv(target, 1, natural.data());
-      if (shape.components == 4) gl.Uniform4uiv(target, 1, natural.data());
+      return copy(GLuint(), &T::GetUniformuiv,
+                  std::array{&T::Uniform1uiv, &T::Uniform2uiv, &T::Uniform3uiv, &T::Uniform4uiv});
+    case Kind::precise:
+      return copy(GLdouble(), &T::GetUniformdv,
+                  std::array{&T::Uniform1dv, &T::Uniform2dv, &T::Uniform3dv, &T::Uniform4dv});
+    case Kind::matrix: {
+      std::array<GLfloat, 16> value{};
+      gl.GetUniformfv(from, source, value.data());
+      (gl.*matrix_setter(type))(target, 1, GL_FALSE, value.data());
+      return true;
+    }
+    case Kind::precise_matrix:
       break;
   }
+  return false;
 }
 
 GLuint compile(const DispatchTable& gl, GLenum stage, const std::vector<std::string>& sources, GLuint program) {
@@ -198,7 +272,9 @@ void describe_fragment_stage(const GlContext& context, const ProgramRecord& reco
         if (stages.trouble.empty()) stages.trouble = "the fragment shader reads " + input.name;
         continue;
       }
-      if (shape.components == 0 || shape.kind == UniformShape::Kind::matrix || answer[1] > 1) {
+      const bool probed =
+          shape.kind == Kind::real || shape.kind == Kind::integer || shape.kind == Kind::natural;
+      if (shape.components == 0 || !probed || answer[1] > 1) {
         if (stages.trouble.empty())
           stages.trouble = "the fragment shader reads " + input.name + ", of a type that is not probed";
         stages.unprobed.push_back({.name = std::string(program::variable_of(input.name)),
@@ -421,42 +497,7 @@ void find_behind_inputs(const GlContext& context, const std::optional<program::S
 }  // namespace
 
 std::size_t components_of_type(GLenum type) {
-  switch (type) {
-    case GL_FLOAT_VEC2:
-    case GL_INT_VEC2:
-    case GL_UNSIGNED_INT_VEC2:
-    case GL_BOOL_VEC2:
-    case GL_DOUBLE_VEC2:
-      return 2;
-    case GL_FLOAT_VEC3:
-    case GL_INT_VEC3:
-    case GL_UNSIGNED_INT_VEC3:
-    case GL_BOOL_VEC3:
-    case GL_DOUBLE_VEC3:
-      return 3;
-    case GL_FLOAT_VEC4:
-    case GL_INT_VEC4:
-    case GL_UNSIGNED_INT_VEC4:
-    case GL_BOOL_VEC4:
-    case GL_DOUBLE_VEC4:
-    case GL_FLOAT_MAT2:
-      return 4;
-    case GL_FLOAT_MAT2x3:
-    case GL_FLOAT_MAT3x2:
-      return 6;
-    case GL_FLOAT_MAT2x4:
-    case GL_FLOAT_MAT4x2:
-      return 8;
-    case GL_FLOAT_MAT3:
-      return 9;
-    case GL_FLOAT_MAT3x4:
-    case GL_FLOAT_MAT4x3:
-      return 12;
-    case GL_FLOAT_MAT4:
-      return 16;
-    default:
-      return 1;
-  }
+  return std::size_t(std::max(shape_of(type).components, 1));
 }
 
 bool is_named(const StageInput& input, const std::string& name) {
@@ -612,14 +653,20 @@ GLuint probe_program(const GlContext& context, const ProgramRecord* record,
   return 0;
 }
 
-void copy_uniforms(const GlContext& context, GLuint from, GLuint to) {
+std::string not_copied(const std::string& name) {
+  return fmt::format("the uniform '{}' is of a type that is not copied", name);
+}
+
+std::string copy_uniforms(const GlContext& context, GLuint from, GLuint to) {
   const DispatchTable& gl = *context.gl;
+  std::string missing;
+  gl.UseProgram(to);
   for_each_uniform(gl, to, [&](const std::string& name, GLenum type) {
     if (name.starts_with("gl_")) return;  // fixed-function state, the same for both
     const GLint source = gl.GetUniformLocation(from, name.c_str());
     const GLint target = gl.GetUniformLocation(to, name.c_str());
-    if (source >= 0 && target >= 0 && shape_of(type).components > 0)
-      copy_uniform(gl, from, source, to, target, type);
+    if (source < 0 || target < 0) return;  // in a block, or not in use
+    if (!copy_uniform(gl, from, source, target, type) && missing.empty()) missing = name;
   });
   GLint blocks = 0;
   if (context.version >= 310) gl.GetProgramiv(to, GL_ACTIVE_UNIFORM_BLOCKS, &blocks);
@@ -632,6 +679,7 @@ void copy_uniforms(const GlContext& context, GLuint from, GLuint to) {
     gl.GetActiveUniformBlockiv(from, source, GL_UNIFORM_BLOCK_BINDING, &binding);
     gl.UniformBlockBinding(to, GLuint(block), GLuint(binding));
   }
+  return missing;
 }
 
 namespace {
@@ -677,6 +725,9 @@ std::vector<double> uniform_components(const GlContext& context, GLuint program,
       return read(GLint(), [&](GLint* value) { gl.GetUniformiv(program, location, value); });
     case Kind::natural:
       return read(GLuint(), [&](GLuint* value) { gl.GetUniformuiv(program, location, value); });
+    case Kind::precise:
+    case Kind::precise_matrix:
+      return read(GLdouble(), [&](GLdouble* value) { gl.GetUniformdv(program, location, value); });
     default:
       return read(GLfloat(), [&](GLfloat* value) { gl.GetUniformfv(program, location, value); });
   }
@@ -691,11 +742,12 @@ std::array<float, 2> UniformValue::floats() const {
 
 void append_uniform(const GlContext& context, GLuint program, const StageUniform& uniform,
                     std::vector<float>& values) {
-  const bool whole = is_whole(shape_of(uniform.type).kind);
+  const Kind kind = shape_of(uniform.type).kind;
+  const bool exact = is_whole(kind) || kind == Kind::precise || kind == Kind::precise_matrix;
   for (const double value : uniform_components(context, program, uniform)) {
     const auto [rounded, remainder] = UniformValue{{}, 0, value}.floats();
     values.push_back(rounded);
-    if (whole) values.push_back(remainder);
+    if (exact) values.push_back(remainder);
   }
 }
 

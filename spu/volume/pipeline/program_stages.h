@@ -118,10 +118,15 @@ GLuint probe_program(const GlContext& context, const ProgramRecord* record,
                      const std::vector<StageInput>& inputs, const std::string& coordinate,
                      std::string& trouble);
 
-/// Gives every uniform of `to` the value, and every uniform block the binding, that it has in `from`, by name.
-void copy_uniforms(const GlContext& context, GLuint from, GLuint to);
+/// Why a run is not substituted if the uniform `name` is not copied.
+std::string not_copied(const std::string& name);
 
-/// Appends the current value of one uniform of `program`: of integers, with what rounding to float leaves out.
+/// Gives every uniform of `to` the value, and every uniform block the binding, that it has in `from`, by name.
+/// Returns the name of a uniform of a type that is not copied; empty: all were.
+std::string copy_uniforms(const GlContext& context, GLuint from, GLuint to);
+
+/// Appends the current value of one uniform of `program`: of integers and doubles, with what rounding
+/// to float leaves out.
 void append_uniform(const GlContext& context, GLuint program, const StageUniform& uniform,
                     std::vector<float>& values);
 

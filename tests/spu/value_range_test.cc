@@ -82,6 +82,41 @@ TEST(ValueRange, OfManyValuesHoldsThem) {
   EXPECT_EQ(value_range(signed_words(), {-1, 1}), (std::array{-1.0F, 1.0F}));
 }
 
+TEST(TableEntries, HoldEveryValueThatTheNearestFilterShows) {
+  for (TextureDescription texture : {words(), signed_words()}) {
+    texture.filter = volume::Filter::nearest;
+    for (const auto& texels : {std::array{0.0F, 1.0F}, {0.0F, 40000.0F / 65535}, {0.25F, 0.26F}}) {
+      const auto range = value_range(texture, texels);
+      const int entries = table_entries(texture, range);
+      EXPECT_GE(entries, probed_entries);
+      EXPECT_LE(entries, 65536);
+      EXPECT_FALSE(may_lie_between_entries(texture, range, entries));
+    }
+    EXPECT_TRUE(may_lie_between_entries(texture, texture.held, probed_entries));
+  }
+}
+
+TEST(TableEntries, AreFewWhereSamplesAreInterpolated) {
+  EXPECT_EQ(table_entries(words(), {0, 1}), probed_entries);
+  EXPECT_FALSE(may_lie_between_entries(words(), {0, 1}, probed_entries));
+}
+
+TEST(TableEntries, CannotHoldAllFloats) {
+  TextureDescription texture;
+  texture.type = TexelType::f32;
+  texture.filter = volume::Filter::nearest;
+  texture.steps = 0;
+  EXPECT_EQ(table_entries(texture, {0, 1}), probed_entries);
+  EXPECT_TRUE(may_lie_between_entries(texture, {0, 1}, probed_entries));
+}
+
+TEST(TableEntries, HoldBytesInTablesOfSlicesAndOfRays) {
+  TextureDescription texture;
+  texture.filter = volume::Filter::nearest;
+  for (const int entries : {probed_entries, probed_entries_of_rays})
+    EXPECT_FALSE(may_lie_between_entries(texture, {0, 1}, entries));
+}
+
 TEST(ValueRange, StaysWhereAFieldChangesALittle) {
   const auto before = value_range(words(), {100.0F / 65535, 3000.0F / 65535});
   EXPECT_EQ(value_range(words(), {120.0F / 65535, 2900.0F / 65535}), before);

@@ -7,10 +7,12 @@
 #include "spu/report/counters.h"
 #include "spu/report/optimization.h"
 #include "spu/track/share_group.h"
+#include "spu/volume/classification/texel_inputs.h"
 #include "spu/volume/context/context.h"
 #include "spu/volume/pipeline/block_members.h"
 #include "spu/volume/session/render_session.h"
 #include "spu/volume/texture/texture_parameter.h"
+#include "spu/volume/texture/value_range.h"
 #include "spu/volume/timing/frame_account.h"
 
 namespace understudy::spu {
@@ -156,8 +158,9 @@ Classifier::Key Classifier::key_of(const Pipeline& pipeline, const RecognisedRun
   const std::size_t without_tables = key.values.size();
   append_tables(pipeline, key);
   // In a program that is not refused, only samples address the tables.
-  key.take_inputs_from(without_tables, program ? VerificationSchedule::Effect::predicted
-                                               : VerificationSchedule::Effect::measured);
+  using Effect = VerificationSchedule::Effect;
+  const Effect of_samples = effect_on_samples(texture, range, table_entries(texture, range), Effect::predicted);
+  key.take_inputs_from(without_tables, program ? of_samples : Effect::measured);
   return key;
 }
 

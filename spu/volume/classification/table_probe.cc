@@ -2,6 +2,7 @@
 #include "spu/volume/classification/table_probe.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -59,12 +60,19 @@ bool sees_neighbours(ProbeBench& bench, const GlContext& context, const TextureD
   return false;
 }
 
+constexpr const char* colours_not_finite = "the fragment stage gives colours that are not finite";
+
 /// Probes the values of a table, with other inputs than those of the run's first vertex.
 class TableProbe {
  public:
   TableProbe(ProbeBench& bench, const GlContext& context, const TextureDescription& texture,
              const FragmentInputs& fragment, const std::array<float, 2>& range)
-      : bench_(bench), context_(context), texture_(texture), fragment_(fragment), ramp_(probe_pixels) {
+      : bench_(bench),
+        context_(context),
+        texture_(texture),
+        fragment_(fragment),
+        range_(range),
+        ramp_(probe_pixels) {
     for (int i = 0; i < probe_pixels; ++i) {
       const double place = double(std::min(i, probed_entries - 1)) / (probed_entries - 1);
       ramp_[std::size_t(i)] = float(range[0] + place * (double(range[1]) - range[0]));
@@ -86,6 +94,24 @@ class TableProbe {
     show(byte_probe_format(texture_.base), probe_edge, texels);
     const ProbedImage seen = bench_.draw(without_coordinate(fragment_, inputs), true);
     for (std::size_t i = 0; i < bytes; ++i) table[entries_a_byte * i] = seen[i];
+  }
+  /// A table of more entries than an image has pixels.
+  ProbedImage table_of(int entries, const InputValues& inputs) {
+    const GLenum format = texture_.type == volume::TexelType::u16 ? word_probe_format(texture_.base)
+                                                                  : probe_format(texture_.base);
+    ProbedImage table;
+    table.reserve(std::size_t(entries));
+    std::vector<float> texels(probe_pixels);
+    for (int first = 0; first < entries; first += probe_pixels) {
+      for (int i = 0; i < probe_pixels; ++i) {
+        const double place = double(std::min(first + i, entries - 1)) / (entries - 1);
+        texels[std::size_t(i)] = float(range_[0] + place * (double(range_[1]) - range_[0]));
+      }
+      show(format, probe_edge, texels);
+      const ProbedImage seen = bench_.draw(without_coordinate(fragment_, inputs), true);
+      table.insert(table.end(), seen.begin(), seen.begin() + std::min(probe_pixels, entries - first));
+    }
+    return table;
   }
   /// One entry, at coordinates all over the volume.
   ProbedImage everywhere(std::size_t entry, const InputValues& inputs) {
@@ -112,6 +138,7 @@ class TableProbe {
   const GlContext& context_;
   const TextureDescription& texture_;
   const FragmentInputs& fragment_;
+  std::array<float, 2> range_;
   std::vector<float> ramp_;
 };
 
@@ -202,12 +229,13 @@ bool same_everywhere(TableProbe& probe, const ProbedImage& table, const InputVal
 }
 
 /// The table as the nodes use it: premultiplied. Null if its colours cannot be composed.
-std::optional<volume::TransferFunction> composable(const ProbedImage& table, const Pipeline& pipeline,
+std::optional<volume::TransferFunction> composable(std::span<const volume::Rgba> table,
+                                                   const Pipeline& pipeline,
                                                    const std::array<float, 2>& range) {
   volume::TransferFunction function;
   function.low = range[0];
   function.high = range[1];
-  function.entries.assign(table.begin(), table.begin() + probed_entries);
+  function.entries.assign(table.begin(), table.end());
   for (volume::Rgba& entry : function.entries) {
     if (!clamp_as_stored(entry, pipeline.target.floating)) return std::nullopt;
     if (pipeline.blending.premultiplied) continue;
@@ -224,7 +252,7 @@ ProbeFinding probe_table(ProbeBench& bench, const GlContext& context, const Pipe
   TableProbe probe(bench, context, texture, fragment, range);
   ProbedImage table = probe.table(fragment.first);
   if (!bench.drew_any()) return no_fragment_drawn;
-  if (!finite(table)) return "the fragment stage gives colours that are not finite";
+  if (!finite(table)) return colours_not_finite;
 
   // A discarded fragment is transparent to every operator but the minimum, for which zero is a value.
   if (pipeline.blending.op == volume::Operator::min || pipeline.blending.alpha.op == volume::Operator::min) {
@@ -242,7 +270,10 @@ ProbeFinding probe_table(ProbeBench& bench, const GlContext& context, const Pipe
                                     pipeline.stack))
     return "the colour depends on the field around the sample (gradient, lighting)";
   if (texture.type == volume::TexelType::u8) probe.take_bytes(table, tabled);
-  auto function = composable(table, pipeline, range);
+  const int entries = table_entries(texture, range);
+  if (entries > probed_entries) table = probe.table_of(entries, tabled);
+  if (!finite(table)) return colours_not_finite;
+  auto function = composable(std::span(table).first(std::size_t(entries)), pipeline, range);
   if (!function) return "the colours leave [0,1] in a float framebuffer";
   probed->classification = *std::move(function);
   return *std::move(probed);

@@ -11,6 +11,8 @@
 
 #include "compositor/logging/log.h"
 #include "compositor/service.h"
+#include "spu/track/share_group.h"
+#include "spu/volume/classification/texel_inputs.h"
 #include "spu/volume/context/saved_state.h"
 #include "spu/volume/merging/merged_geometry.h"
 #include "spu/volume/merging/merged_upload.h"
@@ -78,6 +80,20 @@ std::optional<ImageRequest> RunMerger::request_of(const Pipeline& pipeline, cons
   return image;
 }
 
+VerificationSchedule::Inputs RunMerger::inputs_of(const MergedVolume& merged, const ImageRequest& image) const {
+  using Effect = VerificationSchedule::Effect;
+  // The mixture differs for any two states of the textures.
+  constexpr std::uint64_t prime = 0x100000001b3;
+  std::uint64_t version = 0;
+  for (const GLuint texture : merged.textures)
+    version = (version * prime) ^ stages_.group.texture_version(texture);
+  const SentVolume& sent = merged.volume.sent;
+  const int entries = table_entries(sent.texture, sent.range);
+  VerificationSchedule::Inputs inputs = image.inputs;
+  append_texels(version, effect_on_samples(sent.texture, sent.range, entries, Effect::measured), inputs);
+  return inputs;
+}
+
 bool RunMerger::goes_with_held(const MergedVolume& merged, const Pipeline& pipeline,
                                const volume::RenderRequest& request) const {
   if (held_.empty()) return true;
@@ -110,7 +126,8 @@ bool RunMerger::holds(std::unique_ptr<Run>& run, RecognisedRun& seen, KnownVolum
   if (!goes_with_held(*merged, pipeline, image->request)) settle();
   if (held_.empty()) {
     const volume::RenderRequest whole = placed_as_whole(*merged, pipeline.volume.texture, image->request);
-    merged->volume.verified.schedule.begin(image->inputs, volume::footprint(whole, whole.region).pixels());
+    merged->volume.verified.schedule.begin(inputs_of(*merged, *image),
+                                           volume::footprint(whole, whole.region).pixels());
     comparison_.begin(*merged, *run, image->request);
   }
   comparison_.add(*run);

@@ -77,6 +77,8 @@ class RunMerger {
   /// Null if the colours cannot be common to all bricks.
   std::optional<ImageRequest> request_of(const Pipeline& pipeline, const RecognisedRun& seen,
                                          KnownVolume& volume, const MergedVolume& merged);
+  /// What the image of the whole depends on, given the request for its first brick.
+  VerificationSchedule::Inputs inputs_of(const MergedVolume& merged, const ImageRequest& image) const;
   bool goes_with_held(const MergedVolume& merged, const Pipeline& pipeline,
                       const volume::RenderRequest& request) const;
   /// Takes the session's lock.

@@ -13,6 +13,7 @@
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/ray_probes.h"
 #include "spu/volume/proxy/step_fit.h"
+#include "spu/volume/texture/value_range.h"
 #include "volume/matrix.h"
 
 namespace understudy::spu {
@@ -21,8 +22,6 @@ using volume::Rgba;
 
 namespace {
 
-/// Multiples of 1/255 fall on entries.
-constexpr int table_entries = 4 * 255 + 1;
 /// A ray more opaque than this says little about one sample.
 constexpr float opaque = 0.6F;
 
@@ -50,9 +49,9 @@ class TableRays {
         rule_(rule),
         march_(march),
         premultiplied_(premultiplied_already(measured, march)) {
-    values_.reserve(table_entries);
-    for (int i = 0; i < table_entries; ++i)
-      values_.push_back(value_at(measured.range, double(i) / (table_entries - 1)));
+    values_.reserve(probed_entries_of_rays);
+    for (int i = 0; i < probed_entries_of_rays; ++i)
+      values_.push_back(value_at(measured.range, double(i) / (probed_entries_of_rays - 1)));
   }
 
   /// Returns the ray in view whose number of samples comes closest; `within` a step, where in the step it ends.

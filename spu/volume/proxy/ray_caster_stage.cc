@@ -14,6 +14,7 @@
 #include "compositor/service.h"
 #include "compositor/service/limits.h"
 #include "spu/report/optimization.h"
+#include "spu/volume/classification/texel_inputs.h"
 #include "spu/volume/proxy/exit_steps.h"
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/geometry_inside.h"
@@ -21,6 +22,7 @@
 #include "spu/volume/proxy/ray_ends.h"
 #include "spu/volume/proxy/shader_background.h"
 #include "spu/volume/session/render_session.h"
+#include "spu/volume/texture/value_range.h"
 #include "spu/volume/timing/frame_account.h"
 #include "spu/volume/verification/tile_comparison.h"
 #include "volume/cell_lattice.h"
@@ -77,15 +79,20 @@ std::vector<volume::HalfSpace> ends_of(const ProxyBox& box, const Cuts& cuts) {
 }
 
 /// `follows`: which of the varying scalars move with the camera; one that changes alone may cut the volume.
-VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, const March& march,
+VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, const March& march, const SentVolume& sent,
                                        const std::vector<bool>& follows) {
   using Effect = VerificationSchedule::Effect;
+  const auto on_samples = [&](Effect foreseen) {
+    return effect_on_samples(sent.texture, sent.range, probed_entries_of_rays, foreseen);
+  };
   VerificationSchedule::Inputs all;
+  append_texels(sent.description.version, on_samples(Effect::measured), all);
+  const std::size_t first = all.size();
   for (const float value : inputs.fixed) all.push_back({value});
-  for (const std::size_t table : inputs.tables) all[table].effect = Effect::predicted;
+  for (const std::size_t table : inputs.tables) all[first + table].effect = on_samples(Effect::predicted);
   // Steps that were only likely are probably other ones now.
   for (const std::size_t step : inputs.steps)
-    all[step].effect = march.steps_seen ? Effect::predicted : Effect::unknown;
+    all[first + step].effect = march.steps_seen ? Effect::predicted : Effect::unknown;
   std::size_t vector = 0;
   for (std::size_t i = 0; i < inputs.varying.size(); ++i) {
     while (vector + 1 < inputs.varying_begins.size() && inputs.varying_begins[vector + 1] <= i) ++vector;
@@ -497,7 +504,7 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   const std::string_view why = why_measured(draw, box, inputs, follows, turned);
   classifier_.count_probe(why);
   if (!why.empty()) box = measure(draw, box, inputs, service);
-  VerificationSchedule::Inputs depends_on = inputs_of(inputs, *known.march.march, follows);
+  VerificationSchedule::Inputs depends_on = inputs_of(inputs, *known.march.march, known.sent, follows);
   known.march.inputs = std::move(inputs);
   if (const auto& background = known.march.march->background) {
     if (!hides_what_was_there(pipeline, background->alpha))

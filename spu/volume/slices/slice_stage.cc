@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "compositor/service.h"
+#include "spu/volume/classification/texel_inputs.h"
+#include "spu/volume/texture/value_range.h"
 
 namespace understudy::spu {
 
@@ -31,6 +33,10 @@ ImageRequest SliceStage::request(const Pipeline& pipeline, const RecognisedRun& 
   uploader_.upload({pipeline, seen.stack, seen.texture_version, seen.slices.region, seen.slice_segments}, sent,
                    known.counters, service);
   ImageRequest image = compose(pipeline, seen, known);
+  using Effect = VerificationSchedule::Effect;
+  const Effect effect =
+      effect_on_samples(sent.texture, sent.range, table_entries(sent.texture, sent.range), Effect::measured);
+  append_texels(sent.description.version, effect, image.inputs);
   composer_.hide_behind_geometry(pipeline, image.request);
   return image;
 }

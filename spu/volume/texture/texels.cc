@@ -387,6 +387,21 @@ GLenum byte_probe_format(BaseFormat base) {
   }
 }
 
+GLenum word_probe_format(BaseFormat base) {
+  switch (base) {
+    case BaseFormat::luminance:
+      return GL_LUMINANCE16;
+    case BaseFormat::intensity:
+      return GL_INTENSITY16;
+    case BaseFormat::alpha:
+      return GL_ALPHA16;
+    case BaseFormat::rgba:
+      return GL_RGBA16;
+    default:
+      return GL_R16;
+  }
+}
+
 GLenum upload_format(BaseFormat base) {
   switch (base) {
     case BaseFormat::luminance:

@@ -49,6 +49,8 @@ std::optional<std::string> describe_texture(const GlContext& context, GLenum tar
 GLenum probe_format(BaseFormat base);
 /// The same with one byte per component.
 GLenum byte_probe_format(BaseFormat base);
+/// The same with 16 bits per component.
+GLenum word_probe_format(BaseFormat base);
 GLenum upload_format(BaseFormat base);
 
 /// Reads any box of texels. Expects tight pixel packing (SavedState).

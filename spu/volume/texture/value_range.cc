@@ -36,6 +36,11 @@ std::array<float, 2> rounded_outwards(std::array<float, 2> range, std::array<flo
   return {float(double(low) / steps), float(double(low + values) / steps)};
 }
 
+/// Returns how many values, without the first, normalised texels can have in the range.
+int values_within(const TextureDescription& description, const std::array<float, 2>& range) {
+  return int(std::lround((double(range[1]) - range[0]) * description.steps));
+}
+
 }  // namespace
 
 std::array<float, 2> value_range(const TextureDescription& description, std::array<float, 2> range) {
@@ -49,6 +54,19 @@ std::array<float, 2> value_range(const TextureDescription& description, std::arr
   // A constant field has no range to spread a table over: any range above it will do.
   if (range[0] == range[1]) range[1] += std::max(std::abs(range[1]), 1.0F);
   return range;
+}
+
+int table_entries(const TextureDescription& description, const std::array<float, 2>& range) {
+  if (description.filter != volume::Filter::nearest || description.steps == 0) return probed_entries;
+  return std::max(values_within(description, range) + 1, probed_entries);
+}
+
+bool may_lie_between_entries(const TextureDescription& description, const std::array<float, 2>& range,
+                             int entries) {
+  if (description.filter != volume::Filter::nearest) return false;
+  if (description.steps == 0) return true;
+  const int values = values_within(description, range);
+  return values > 0 && (entries - 1) % values != 0;
 }
 
 }  // namespace understudy::spu

@@ -11,9 +11,12 @@ namespace understudy::spu {
 
 struct TextureDescription;
 
-/// Entries of a measured table. Over all 8-bit values, multiples of 1/255 fall on entries, so that 8-bit tables
-/// keep their steps.
+/// Entries of a measured table, except under the nearest filter (table_entries). Over all 8-bit values,
+/// multiples of 1/255 fall on entries, so that 8-bit tables keep their steps.
 constexpr int probed_entries = 16 * 255 + 1;
+
+/// Entries of the table of a ray caster: multiples of 1/255 fall on entries.
+constexpr int probed_entries_of_rays = 4 * 255 + 1;
 
 /// Returns whether a table covers the values that the texels have, instead of all that their type can have.
 constexpr bool has_value_range(volume::TexelType type) {
@@ -25,5 +28,15 @@ constexpr bool has_value_range(volume::TexelType type) {
 /// rounded outwards so that every value that texels can have falls on an entry (up to 4,081 values; of more,
 /// every second, third, ...), and so that a field that changes a little keeps its table.
 std::array<float, 2> value_range(const TextureDescription& description, std::array<float, 2> texels);
+
+/// Returns the number of entries of a table over `range`. Under the nearest filter, samples are texels, and
+/// each may be a label with a colour of its own: the table has all values that normalised texels can have, up
+/// to 65,536.
+int table_entries(const TextureDescription& description, const std::array<float, 2>& range);
+
+/// Returns whether texels may have values between the `entries` entries of a table over `range`, with colours
+/// of their own: samples by the nearest filter then show what no entry holds.
+bool may_lie_between_entries(const TextureDescription& description, const std::array<float, 2>& range,
+                             int entries);
 
 }  // namespace understudy::spu

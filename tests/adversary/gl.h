@@ -33,6 +33,7 @@ namespace adversary {
   X(StencilFunc) X(StencilOp) X(TexBuffer) X(TexCoord2f) X(TexCoord3f) X(TexCoord3fv) X(TexEnvf) X(TexEnvfv) X(TexEnvi) X(TexGenfv) X(TexGeni) \
   X(TexImage1D) X(TexImage2D) X(TexImage3D) X(TexParameterfv) X(TexParameteri) X(TexStorage3D) X(TexSubImage1D) X(TexSubImage2D) \
   X(TexSubImage3D) X(TransformFeedbackVaryings) X(Uniform1d) X(Uniform1f) X(Uniform1fv) X(Uniform1i) X(Uniform1ui) X(Uniform2f) X(Uniform3f) X(Uniform4f) X(Uniform4fv) \
+  X(PolygonOffset) X(ProgramUniform4f) X(UniformMatrix4dv) \
   X(UniformBlockBinding) X(UniformMatrix2x3fv) X(UniformMatrix4fv) X(UniformSubroutinesuiv) X(UnmapBuffer) X(UseProgram) \
   X(UseProgramStages) X(Vertex2f) X(Vertex3f) X(Vertex3fv) X(VertexAttrib1f) X(VertexAttribPointer) X(VertexPointer) X(TexCoordPointer) X(EnableClientState) X(DisableClientState) X(Viewport)
 // clang-format on

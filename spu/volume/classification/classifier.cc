@@ -50,15 +50,6 @@ void append_fog_state(const DispatchTable& gl, std::vector<float>& key) {
   }
 }
 
-void append_alpha_test(const DispatchTable& gl, std::vector<float>& key) {
-  GLfloat value = 0;
-  key.push_back(gl.IsEnabled(GL_ALPHA_TEST) ? 1.0F : 0.0F);
-  gl.GetFloatv(GL_ALPHA_TEST_FUNC, &value);
-  key.push_back(value);
-  gl.GetFloatv(GL_ALPHA_TEST_REF, &value);
-  key.push_back(value);
-}
-
 /// Returns fog over the run: its scalar, observed at every vertex, as an affine map of the position. The map is
 /// fitted like a camera with one coordinate.
 volume::Fog placed_fog(const Pipeline& pipeline, const RecognisedRun& run, const MeasuredFog& measured) {
@@ -142,7 +133,7 @@ Classifier::Key Classifier::key_of(const Pipeline& pipeline, const RecognisedRun
            pipeline.target.floating ? 1.0F : 0.0F},
           {}};
   for (const GLint swizzle : texture.swizzle) key.values.push_back(float(swizzle));
-  if (!context_.core) append_alpha_test(gl, key.values);
+  if (!context_.core) append_fragment_operations(gl, key.values);
   key.take_inputs_from(0);
   const bool program = run.fragment.record != nullptr || !pipeline.assembly.empty();
   if (run.fragment.record != nullptr) {

@@ -48,6 +48,8 @@ GlContext describe_context(const DispatchTable& gl) {
   context.anisotropic_filter = context.version >= 460 ||
                                has_extension(context, "GL_EXT_texture_filter_anisotropic") ||
                                has_extension(context, "GL_ARB_texture_filter_anisotropic");
+  context.program_pipelines =
+      context.version >= 410 || has_extension(context, "GL_ARB_separate_shader_objects");
   context.srgb_decode = has_extension(context, "GL_EXT_texture_sRGB_decode");
   if (!context.core) {
     gl.GetIntegerv(GL_MAX_TEXTURE_UNITS, &context.fixed_function_units);

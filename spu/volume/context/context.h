@@ -19,6 +19,7 @@ struct GlContext {
   bool vertex_assembly = false;       ///< GL_ARB_vertex_program
   bool fog_distance = false;          ///< GL_NV_fog_distance
   bool anisotropic_filter = false;    ///< GL_TEXTURE_MAX_ANISOTROPY
+  bool program_pipelines = false;     ///< OpenGL 4.1 or GL_ARB_separate_shader_objects
   bool srgb_decode = false;           ///< GL_EXT_texture_sRGB_decode
   std::vector<std::string>
       extensions{};              ///< of the driver, such as GL_ARB_gpu_shader5; empty before OpenGL 3.0

@@ -131,6 +131,14 @@ std::optional<std::string> read_blending(const DispatchTable& gl, const Target& 
   return std::nullopt;
 }
 
+void append_fragment_operations(const DispatchTable& gl, std::vector<float>& values) {
+  GLfloat reference = 0;
+  gl.GetFloatv(GL_ALPHA_TEST_REF, &reference);
+  values.insert(values.end(),
+                {gl.IsEnabled(GL_ALPHA_TEST) ? 1.0F : 0.0F, float(state_value(gl, GL_ALPHA_TEST_FUNC)),
+                 reference, float(state_value(gl, GL_CLAMP_FRAGMENT_COLOR))});
+}
+
 volume::Classification alpha_as_colour(const volume::Classification& classification,
                                        const AlphaBlending& alpha) {
   if (const auto* function = std::get_if<volume::TransferFunction>(&classification)) {

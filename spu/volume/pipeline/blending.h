@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dispatch/table.h"
 #include "spu/volume/pipeline/target.h"
@@ -46,6 +47,10 @@ struct Blending {
 
 /// Reads the blend state; returns a reason if no operator of the nodes is equivalent.
 std::optional<std::string> read_blending(const DispatchTable& gl, const Target& target, Blending& blending);
+
+/// Appends what a compatibility profile does to fragments before it blends them (clamping, alpha test), as
+/// values to compare.
+void append_fragment_operations(const DispatchTable& gl, std::vector<float>& values);
 
 /// Returns the classification whose image has what `alpha` accumulates in its first channel, and the fragments'
 /// alpha in its last.

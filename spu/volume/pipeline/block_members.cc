@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <string_view>
 #include <utility>
 
 #include "spu/volume/context/context.h"
+#include "spu/volume/pipeline/active_uniform.h"
 
 namespace understudy::spu {
 namespace {
@@ -97,11 +97,7 @@ std::size_t bytes_of_element(const DispatchTable& gl, GLuint program, GLuint uni
 /// Adds a uniform of a block, element by element.
 void append_elements(const DispatchTable& gl, GLuint program, GLuint uniform, GLuint block,
                      std::vector<BlockMember>& members) {
-  std::array<char, 256> written{};
-  GLint listed = 0;
-  GLenum type = 0;
-  gl.GetActiveUniform(program, uniform, GLsizei(written.size()), nullptr, &listed, &type, written.data());
-  const std::string name = written.data();
+  const auto [name, type, listed] = active_uniform(gl, program, uniform);
   const std::size_t elements = std::size_t(std::max(listed, 1));
   const std::size_t stride = asked(gl, program, uniform, GL_UNIFORM_ARRAY_STRIDE);
   const std::size_t bytes = bytes_of_element(gl, program, uniform, type);

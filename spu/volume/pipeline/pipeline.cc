@@ -214,6 +214,27 @@ std::optional<std::string> read_fixed_function_textures(const GlContext& context
   return std::nullopt;
 }
 
+/// Returns the program pipeline object that draws while no program is in use; 0: none.
+GLuint program_pipeline(const GlContext& context) {
+  return context.program_pipelines ? GLuint(state_value(*context.gl, GL_PROGRAM_PIPELINE_BINDING)) : 0;
+}
+
+/// Finds the volume that the program pipeline `object` draws. Its stages are programs with uniforms of their
+/// own, which may be exchanged one by one: always returns a reason.
+std::optional<std::string> read_pipeline_textures(const GlContext& context, const ShareGroup& group,
+                                                  ProgramSamplers& samplers, GLuint object,
+                                                  Pipeline& pipeline) {
+  GLint fragment_program = 0;
+  context.gl->GetProgramPipelineiv(object, GL_FRAGMENT_SHADER, &fragment_program);
+  pipeline.program = GLuint(fragment_program);
+  constexpr bool stacks = false;
+  if (pipeline.program != 0)
+    read_program_textures(context, group, samplers, stacks, pipeline);
+  else if (!context.core)
+    read_fixed_function_textures(context, stacks, pipeline);
+  return "a program pipeline object (glBindProgramPipeline) is drawn with";
+}
+
 /// Refuses queries in progress whose result our own drawing would change.
 std::optional<std::string> read_queries(const GlContext& context) {
   const DispatchTable& gl = *context.gl;
@@ -283,6 +304,15 @@ bool has_depth_buffer(const DispatchTable& gl) {
   return type != GL_NONE;
 }
 
+/// Whether polygons are tested at other depths than their vertices have.
+bool offsets_depths(const DispatchTable& gl) {
+  GLfloat factor = 0;
+  GLfloat units = 0;
+  gl.GetFloatv(GL_POLYGON_OFFSET_FACTOR, &factor);
+  gl.GetFloatv(GL_POLYGON_OFFSET_UNITS, &units);
+  return gl.IsEnabled(GL_POLYGON_OFFSET_FILL) && (factor != 0 || units != 0);
+}
+
 std::optional<std::string> read_depth_test(const DispatchTable& gl, Pipeline& pipeline) {
   pipeline.depth_test = gl.IsEnabled(GL_DEPTH_TEST) && has_depth_buffer(gl);
   if (!pipeline.depth_test) return std::nullopt;
@@ -296,6 +326,8 @@ std::optional<std::string> read_depth_test(const DispatchTable& gl, Pipeline& pi
     return "the depth function is neither LESS nor LEQUAL";
   }
   pipeline.depth_or_equal = compare == GL_LEQUAL;
+  if ((pipeline.depth_test || pipeline.depth_write) && offsets_depths(gl))
+    return "a polygon offset moves the depths of what is drawn";
   if (pipeline.depth_write && pipeline.blending.front_to_back != FrontToBack::no)
     return "slices drawn front to back write depth, and so hide each other";
   return std::nullopt;
@@ -338,6 +370,8 @@ PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group,
   std::optional<std::string> reason;
   if (pipeline.program != 0) {
     reason = read_program_textures(context, group, samplers, stacks, pipeline);
+  } else if (const GLuint object = program_pipeline(context); object != 0) {
+    reason = read_pipeline_textures(context, group, samplers, object, pipeline);
   } else if (!context.core) {
     reason = read_fixed_function_textures(context, stacks, pipeline);
   }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/pipeline/program_samplers.h"
 
-#include <array>
 #include <string>
+
+#include "spu/volume/pipeline/active_uniform.h"
 
 namespace understudy::spu {
 namespace {
@@ -29,13 +30,9 @@ std::vector<SamplerUniform> read_samplers(const DispatchTable& gl, GLuint progra
   GLint uniforms = 0;
   gl.GetProgramiv(program, GL_ACTIVE_UNIFORMS, &uniforms);
   for (GLint i = 0; i < uniforms; ++i) {
-    std::array<char, 256> name{};
-    GLint size = 0;
-    GLenum type = 0;
-    gl.GetActiveUniform(program, GLuint(i), GLsizei(name.size()), nullptr, &size, &type, name.data());
+    auto [text, type, size] = active_uniform(gl, program, GLuint(i));
     if (!may_be_of_a_volume_or_table(type)) continue;
     // Arrays are listed by their first element.
-    std::string text = name.data();
     const bool array = text.ends_with("[0]");
     if (array) text.resize(text.size() - 3);
     for (GLint element = 0; element < size; ++element) {

@@ -17,6 +17,7 @@
 
 #include "spu/track/program_sources.h"
 #include "spu/volume/context/context.h"
+#include "spu/volume/pipeline/active_uniform.h"
 #include "spu/volume/pipeline/block_members.h"
 #include "spu/volume/pipeline/built_in_uniform.h"
 #include "spu/volume/program/analysis.h"
@@ -135,11 +136,7 @@ void for_each_uniform(const DispatchTable& gl, GLuint program, Visit visit) {
   GLint count = 0;
   gl.GetProgramiv(program, GL_ACTIVE_UNIFORMS, &count);
   for (GLint i = 0; i < count; ++i) {
-    std::array<char, 256> name{};
-    GLint size = 0;
-    GLenum type = 0;
-    gl.GetActiveUniform(program, GLuint(i), GLsizei(name.size()), nullptr, &size, &type, name.data());
-    std::string text = name.data();
+    auto [text, type, size] = active_uniform(gl, program, GLuint(i));
     // Arrays are listed by their first element.
     const bool array = text.ends_with("[0]");
     if (array) text.resize(text.size() - 3);
@@ -475,6 +472,36 @@ std::vector<InputComponent> components_reached(const std::optional<program::Stag
   return reached;
 }
 
+bool is_image(GLenum type) {
+  return type >= GL_IMAGE_1D && type <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY;
+}
+
+/// Returns the name of a shader storage block of the program; empty: it has none.
+std::string storage_block_of(const GlContext& context, GLuint program) {
+  constexpr int first_version_with_storage = 430;
+  if (context.version < first_version_with_storage) return {};
+  const DispatchTable& gl = *context.gl;
+  GLint blocks = 0;
+  gl.GetProgramInterfaceiv(program, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &blocks);
+  if (blocks == 0) return {};
+  std::array<char, 256> name{};
+  gl.GetProgramResourceName(program, GL_SHADER_STORAGE_BLOCK, 0, GLsizei(name.size()), nullptr, name.data());
+  return name.data();
+}
+
+/// Returns what the vertex stage may write to besides its outputs: of a source that cannot be analysed,
+/// whatever OpenGL lists for `alone`, a program of this stage. Empty: nothing.
+std::string written_by(const GlContext& context, const std::optional<program::StageFacts>& vertex,
+                       GLuint alone) {
+  if (vertex) return vertex->side_effects.empty() ? std::string() : vertex->side_effects.front().name;
+  if (alone == 0) return {};
+  std::string written = storage_block_of(context, alone);
+  for_each_uniform(*context.gl, alone, [&](const std::string& name, GLenum type) {
+    if (is_image(type) || type == GL_UNSIGNED_INT_ATOMIC_COUNTER) written = name;
+  });
+  return written;
+}
+
 /// Finds the uniforms that reach inputs. All uniforms of the observer reach the position or an input.
 void find_behind_inputs(const GlContext& context, const std::optional<program::StageFacts>& vertex,
                         GLuint application, ProgramStages& stages) {
@@ -540,6 +567,7 @@ ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, 
       stages.observer = link_observer(context, record, application, probed, trouble);
     }
   }
+  stages.written_by_vertices = written_by(context, vertex, stages.observer);
   if (stages.observer != 0)
     find_behind_inputs(context, vertex, application, stages);
   else if (stages.trouble.empty())

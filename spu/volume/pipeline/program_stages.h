@@ -86,6 +86,8 @@ struct ProgramStages {
   std::vector<VertexUniform> vertex_uniforms;     ///< those that reach any input
   std::vector<ProgramBlockMember> block_members;  ///< if the vertex stage can be captured
   bool uniform_blocks = false;                    ///< the fragment stage reads uniform buffers
+  std::string written_by_vertices;  ///< a buffer, image or counter that the vertex stage may write
+                                    ///< to; empty: none
   GLuint observer = 0;  ///< vertex stage; captures gl_Position, then every input that is written, then those
                         ///< of `unprobed`, interleaved as floats; 0: none
   std::string trouble;  ///< why the fragment stage cannot be probed with chosen samples; empty: it can

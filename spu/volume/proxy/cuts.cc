@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -23,6 +24,7 @@ constexpr const char* dataset_to_texture = "in_inverseTextureDatasetMatrix[0]";
 constexpr const char* dataset_to_world = "in_volumeMatrix[0]";
 
 constexpr std::size_t regions = 27;
+constexpr std::size_t numbers_of_grid = 6;    ///< low and high of each axis
 constexpr std::size_t numbers_per_plane = 6;  ///< a point on it, and its normal
 constexpr std::size_t most_clipping_planes = 8;
 
@@ -165,7 +167,7 @@ class Parts {
 std::vector<std::vector<HalfSpace>> cropping_of(const DispatchTable& gl, GLuint program,
                                                 const volume::Matrix4& texture_to_clip) {
   const volume::Matrix4 to_texture = matrix(gl, program, dataset_to_texture);
-  std::array<double, 6> planes{};
+  std::array<double, numbers_of_grid> planes{};
   for (std::size_t i = 0; i < planes.size(); ++i) {
     volume::Vec3 on_axis{};
     on_axis[i / 2] = double(number(gl, program, cropping_planes, i));
@@ -189,12 +191,27 @@ std::vector<std::vector<HalfSpace>> cropping_of(const DispatchTable& gl, GLuint 
   return kept_parts(kept, planes, eye);
 }
 
+std::size_t count_of_clipping_planes(const DispatchTable& gl, GLuint program) {
+  const auto numbers = std::size_t(std::max(0.0F, number(gl, program, clipping_planes, 0)));
+  return std::min(numbers / numbers_per_plane, most_clipping_planes);
+}
+
+/// Returns the index in `uniform` if it is an element of `array`.
+std::optional<std::size_t> index_in(std::string_view array, std::string_view uniform) {
+  if (!uniform.starts_with(array)) return std::nullopt;
+  const std::string_view rest = uniform.substr(array.size());
+  std::size_t index = 0;
+  if (!rest.starts_with('[') || !rest.ends_with(']')) return std::nullopt;
+  const char* const end = rest.data() + rest.size() - 1;
+  const auto [read_to, error] = std::from_chars(rest.data() + 1, end, index);
+  return error == std::errc() && read_to == end ? std::optional(index) : std::nullopt;
+}
+
 std::vector<HalfSpace> clipping_of(const DispatchTable& gl, GLuint program) {
   std::vector<HalfSpace> planes;
   const volume::Matrix4 texture_to_world =
       volume::multiply(matrix(gl, program, dataset_to_world), matrix(gl, program, texture_to_dataset));
-  const auto numbers = std::size_t(std::max(0.0F, number(gl, program, clipping_planes, 0)));
-  const std::size_t count = std::min(numbers / numbers_per_plane, most_clipping_planes);
+  const std::size_t count = count_of_clipping_planes(gl, program);
   for (std::size_t i = 0; i < count; ++i) {
     volume::Vec3 point{};
     volume::Vec3 normal{};
@@ -232,9 +249,16 @@ Cuts read_cuts(const GlContext& context, GLuint program, const volume::Matrix4& 
   return cuts;
 }
 
-bool tells_cuts(std::string_view uniform) {
-  return uniform.starts_with(cropping_planes) || uniform.starts_with(cropping_flags) ||
-         uniform.starts_with(clipping_planes);
+CutUniforms::CutUniforms(const GlContext& context, GLuint program) : crops_(crops(context, program)) {
+  if (clips(context, program))
+    clipping_numbers_ = 1 + numbers_per_plane * count_of_clipping_planes(*context.gl, program);
+}
+
+bool CutUniforms::contains(std::string_view uniform) const {
+  if (const auto plane = index_in(cropping_planes, uniform)) return crops_ && *plane < numbers_of_grid;
+  if (const auto flag = index_in(cropping_flags, uniform)) return crops_ && *flag > 0 && *flag <= regions;
+  const auto number = index_in(clipping_planes, uniform);
+  return number && *number < clipping_numbers_;
 }
 
 LiftedCuts::LiftedCuts(const GlContext& context, GLuint program) : gl_(*context.gl), program_(program) {

@@ -30,8 +30,18 @@ struct Cuts {
 /// Reads the cuts of `program`, as seen through a camera.
 Cuts read_cuts(const GlContext& context, GLuint program, const volume::Matrix4& texture_to_clip);
 
-/// Whether a uniform holds cuts: these may change, and what was measured with the cuts lifted still holds.
-bool tells_cuts(std::string_view uniform);
+/// The uniforms of a program that read_cuts reads at present: these may change, and what was measured with the
+/// cuts lifted still holds. A uniform of such a name in another program is not among them.
+class CutUniforms {
+ public:
+  CutUniforms(const GlContext& context, GLuint program);
+  /// `uniform`: with an index.
+  bool contains(std::string_view uniform) const;
+
+ private:
+  bool crops_;
+  std::size_t clipping_numbers_ = 0;
+};
 
 /// While it lives, `program` draws its whole volume. The destructor restores the uniforms.
 class LiftedCuts {

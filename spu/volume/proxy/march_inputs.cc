@@ -98,13 +98,22 @@ MarchInputs march_inputs(const MarchContext& measured, const CoordinateSpace& sp
   };
   varies("GL_CULL_FACE_MODE", gl.IsEnabled(GL_CULL_FACE) ? float(culled) : 0.0F);
   varies("GL_FRONT_FACE", float(front));
+  // Rays are probed without the alpha test, but images are compared with it.
+  if (!measured.context.core) {
+    inputs.begin_vector("fragment operations", false);
+    append_fragment_operations(gl, inputs.varying);
+  }
   for (const int extent : measured.texture.size) inputs.fixed.push_back(float(extent));
   for (const GLint swizzle : measured.texture.swizzle) inputs.fixed.push_back(float(swizzle));
   if (measured.stages.uniform_blocks) varies("uniform blocks", never_equal);
   const auto record = group.programs().program(pipeline.program);
   append_exactly(record ? record->link : 0, inputs.fixed);
+  const CutUniforms cuts(measured.context, pipeline.program);
   for (const StageUniform& uniform : measured.stages.uniforms) {
-    if (tells_cuts(uniform.name)) continue;  // measured with the cuts lifted
+    if (cuts.contains(uniform.name)) {
+      append_value(measured, uniform, inputs.cuts);
+      continue;
+    }
     const std::size_t before = inputs.fixed.size();
     const bool scalar = is_scalar(uniform.type);
     if (!scalar) inputs.begin_vector(uniform.name, chooses_colours(says, uniform.name));

@@ -37,6 +37,8 @@ struct MarchInputs {
   /// Depth textures and their contents, which probes replace by the far plane: opaque geometry's may be copied
   /// in every frame.
   std::vector<float> depths;
+  /// The planes that cut the volume (cuts.h). The march is measured without them, so it holds if they change.
+  std::vector<float> cuts;
 
   /// Begins a vector of that name, to which everything belongs that is appended to `varying` from now on.
   void begin_vector(std::string_view name, bool chooses, bool may_be_step = false);

@@ -14,6 +14,7 @@
 #include "compositor/service.h"
 #include "compositor/service/limits.h"
 #include "spu/report/optimization.h"
+#include "spu/state_value.h"
 #include "spu/volume/classification/texel_inputs.h"
 #include "spu/volume/proxy/exit_steps.h"
 #include "spu/volume/proxy/field_probe.h"
@@ -102,6 +103,8 @@ VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, const March& m
     all.push_back({std::isnan(value) ? 0.0F : value, follows[i] ? Effect::followed : alone});
   }
   for (const float value : inputs.depths) all.push_back({value});
+  // That the program cuts at these planes is proved by images that are right after they have moved.
+  for (const float value : inputs.cuts) all.push_back({value, Effect::measured});
   // NaN equals no earlier value, so this counts as a change every time.
   if (inputs.unreadable) all.push_back({std::numeric_limits<float>::quiet_NaN(), Effect::unknown});
   return all;
@@ -220,6 +223,46 @@ std::optional<Refusal> refusal_of_replacing(const GlContext& context, const Pipe
   }
   if (blends && !context.core && context.gl->IsEnabled(GL_ALPHA_TEST))
     return "an alpha test is enabled, and fragments are opaque";
+  return std::nullopt;
+}
+
+/// Whether the alpha test discards rays other than those of opacity 0.
+bool discards_visible_alpha(const DispatchTable& gl) {
+  GLfloat reference = 0;
+  gl.GetFloatv(GL_ALPHA_TEST_REF, &reference);
+  switch (state_value(gl, GL_ALPHA_TEST_FUNC)) {
+    case GL_GREATER:
+    case GL_GEQUAL:
+    case GL_NOTEQUAL:
+      return reference > 0;
+    default:
+      return true;
+  }
+}
+
+/// Whether rays of opacity 0 may change what they are blended with.
+bool shows_rays_without_opacity(const Blending& blending, const March& march) {
+  using volume::Operator;
+  constexpr float rounding = 1e-5F;
+  if (blending.op == Operator::min || (!blending.alpha.untouched && blending.alpha.op == Operator::min))
+    return true;
+  return blending.premultiplied && std::ranges::any_of(march.table.entries, [](const volume::Rgba& entry) {
+           return entry[3] == 0 && std::max({entry[0], entry[1], entry[2]}) > rounding;
+         });
+}
+
+/// Why the alpha test may discard rays that would change the image, which is made without it; null if it
+/// cannot.
+std::optional<Refusal> refusal_of_alpha_test(const GlContext& context, const Pipeline& pipeline,
+                                             const March& march) {
+  const DispatchTable& gl = *context.gl;
+  if (context.core || !gl.IsEnabled(GL_ALPHA_TEST) || state_value(gl, GL_ALPHA_TEST_FUNC) == GL_ALWAYS)
+    return std::nullopt;
+  if (discards_visible_alpha(gl))
+    return Refusal{"the alpha test discards rays that would be visible", {}, "turn the alpha test off"};
+  if (shows_rays_without_opacity(pipeline.blending, march))
+    return Refusal{
+        "the alpha test discards rays of opacity 0 that have colours", {}, "turn the alpha test off"};
   return std::nullopt;
 }
 
@@ -504,6 +547,8 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   const std::string_view why = why_measured(draw, box, inputs, follows, turned);
   classifier_.count_probe(why);
   if (!why.empty()) box = measure(draw, box, inputs, service);
+  if (auto refusal = refusal_of_alpha_test(context_, pipeline, *known.march.march))
+    throw Refusal{std::move(*refusal)};
   VerificationSchedule::Inputs depends_on = inputs_of(inputs, *known.march.march, known.sent, follows);
   known.march.inputs = std::move(inputs);
   if (const auto& background = known.march.march->background) {

@@ -98,6 +98,14 @@ bool may_be_box(const Run& run, const ProgramStages& stages) {
   return run.draws <= faces && stages.observer != 0;
 }
 
+/// Whether front and back faces have colours of their own, of which only the front's are captured.
+bool may_show_back_colours(const GlContext& context, const ProgramStages& stages) {
+  if (context.core || !context.gl->IsEnabled(GL_VERTEX_PROGRAM_TWO_SIDE)) return false;
+  return std::ranges::any_of(stages.inputs, [](const StageInput& input) {
+    return input.name == "gl_FrontColor" || input.name == "gl_FrontSecondaryColor";
+  });
+}
+
 /// Whether face culling removes any of the triangles, which transform feedback captures all the same.
 bool culls_any(const DispatchTable& gl, const ObservedPolygons& triangles) {
   if (!gl.IsEnabled(GL_CULL_FACE)) return false;
@@ -198,7 +206,11 @@ RecognisedRun Recogniser::observe(const Run& run, const std::string& known_coord
 
 void Recogniser::observe_shader(const Run& run, const ProgramStages& stages,
                                 const std::string& known_coordinate, RecognisedRun& seen) {
+  if (!stages.written_by_vertices.empty())
+    throw Refusal{"the vertex shader writes to '" + stages.written_by_vertices + "'"};
   if (clips_in_shader(*context_.gl)) throw Refusal{"clip planes cut what a vertex shader draws"};
+  if (may_show_back_colours(context_, stages))
+    throw Refusal{"a vertex shader gives front and back faces colours of their own"};
   Capture capture = capture_vertices(context_, run, stages, known_coordinate);
   if (!capture.fit && !known_coordinate.empty()) capture = capture_vertices(context_, run, stages);
   if (capture.polygons.count() == 0) throw NothingVisible{};

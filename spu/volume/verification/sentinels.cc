@@ -14,8 +14,11 @@ constexpr int rim = 1;
 }  // namespace
 
 volume::Rect Sentinels::next_tile(const volume::Rect& window) {
+  // Tiles that would stick out of the window are moved inside. If no such places were drawn, the pixels at the
+  // window's edges would lie in fewer tiles than others.
   const auto place = [&](int low, int extent) {
-    return low + std::uniform_int_distribution<int>(0, std::max(extent - compared_tile_edge, 0))(random_);
+    const int first = std::uniform_int_distribution<int>(1 - compared_tile_edge, extent - 1)(random_);
+    return low + std::clamp(first, 0, std::max(extent - compared_tile_edge, 0));
   };
   const int x = place(window.x, window.width);
   const int y = place(window.y, window.height);

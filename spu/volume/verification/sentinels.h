@@ -12,8 +12,8 @@ namespace understudy::spu {
 
 class Sentinels {
  public:
-  /// Returns a tile at a random position in `window`, with a rim of one pixel: its pixels are compared with
-  /// their neighbours, too.
+  /// Returns a tile at a random position in `window`, in which no pixel is rarer than others, with a rim of one
+  /// pixel: the tile's pixels are compared with their neighbours, too.
   volume::Rect next_tile(const volume::Rect& window);
   /// Returns the framebuffer for tiles of `request`. It is kept until the viewport's extent, the number of
   /// samples or the background changes; what was drawn into it is not removed.

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/adversary/caster_scene.h"
+#include "tests/adversary/scenario.h"
+
+namespace adversary::casters {
+
+Scenario vertices_pulled_from_storage() {
+  return {.sentence =
+              "The vertex shader scales the box by a number, 1, that it reads from a shader storage buffer.",
+          .expectation = Expectation::must_be_substituted,
+          .start = [](Canvas& canvas) -> DrawFrame {
+            auto scene = caster_scene(canvas, {.vertex = R"(#version 430 core
+layout(location = 0) in vec3 position;
+uniform mat4 clip_from_object;
+layout(std430, binding = 3) readonly buffer Sizes { float size; };
+out vec3 at;
+void main() {
+  at = position;
+  gl_Position = clip_from_object * vec4(size * position, 1.0);
+}
+)"});
+            constexpr float size = 1;
+            GLuint buffer = 0;
+            canvas.gl.GenBuffers(1, &buffer);
+            canvas.gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, buffer);
+            canvas.gl.BufferData(GL_SHADER_STORAGE_BUFFER, sizeof(size), &size, GL_STATIC_DRAW);
+            return [scene](int frame) { scene->draw(frame); };
+          }};
+}
+
+}  // namespace adversary::casters

@@ -143,6 +143,7 @@ std::optional<Probed> probe_segments(ProbeBench& bench, const GlContext& context
   SegmentProbe probe(bench, context, texture, fragment, end);
   const SegmentValues spread = spread_over(range);
   const ProbedImage some = probe.pairs(spread, spread, fragment.first);
+  if (!bench.drew_any()) return std::nullopt;
   if (!finite(some) || !same_everywhere(probe, spread, some, fragment.first) ||
       !same_everywhere(probe, spread, some, fragment.last))
     return std::nullopt;

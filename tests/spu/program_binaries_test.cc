@@ -45,21 +45,27 @@ class ProgramBinaries : public ::testing::Test {
     ASSERT_GT(formats, 0);
     program_ = glsl_program(gl(), vertex, fragment);
   }
+  void TearDown() override {
+    for (const GLuint program : programs_) gl().DeleteProgram(program);
+  }
   const DispatchTable& gl() const { return application_->gl(); }
+  /// Is deleted after the test: Mesa 22.3 writes beyond an allocation if a context ends with such a program.
+  GLuint new_program() { return programs_.emplace_back(gl().CreateProgram()); }
 
   std::unique_ptr<GlApplication> application_;
   GLuint program_ = 0;
+  std::vector<GLuint> programs_;
 };
 
 TEST_F(ProgramBinaries, OfThisRunAreLoaded) {
   const Binary binary = binary_of(gl(), program_);
-  EXPECT_TRUE(loads(gl(), gl().CreateProgram(), binary));
+  EXPECT_TRUE(loads(gl(), new_program(), binary));
   EXPECT_EQ(application_->error(), GLenum(GL_NO_ERROR));
 }
 
 TEST_F(ProgramBinaries, OfAnotherRunAreRefusedAndSourcesCompiledInstead) {
   const Binary binary = binary_of(application_->driver(), program_);
-  const GLuint other = gl().CreateProgram();
+  const GLuint other = new_program();
   EXPECT_FALSE(loads(gl(), other, binary));
   EXPECT_EQ(application_->error(), GLenum(GL_NO_ERROR));
   EXPECT_TRUE(loads(application_->driver(), other, binary));  // the driver would have accepted it
@@ -71,7 +77,7 @@ TEST_F(ProgramBinaries, OfAnotherRunAreRefusedOnceThereIsAVolume) {
   gl().BindTexture(GL_TEXTURE_3D, 1);
   gl().TexImage3D(GL_TEXTURE_3D, 0, GL_R8, 8, 8, 8, 0, GL_RED, GL_UNSIGNED_BYTE, texels.data());
   const Binary binary = binary_of(application_->driver(), program_);
-  EXPECT_FALSE(loads(gl(), gl().CreateProgram(), binary));
+  EXPECT_FALSE(loads(gl(), new_program(), binary));
   EXPECT_EQ(application_->error(), GLenum(GL_NO_ERROR));
 }
 

@@ -49,7 +49,7 @@ class ProgramBinaries : public ::testing::Test {
     for (const GLuint program : programs_) gl().DeleteProgram(program);
   }
   const DispatchTable& gl() const { return application_->gl(); }
-  /// Is deleted after the test: Mesa 22.3 writes beyond an allocation if a context ends with such a program.
+  /// Is deleted after the test.
   GLuint new_program() { return programs_.emplace_back(gl().CreateProgram()); }
 
   std::unique_ptr<GlApplication> application_;
